@@ -1,0 +1,49 @@
+#pragma once
+
+#include <memory>
+#include <span>
+#include <string>
+#include <vector>
+
+namespace heddle {
+
+/// Pattern of a symmetric matrix: lower triangle by columns (compressed), row indices ascending in each column,
+/// diagonal present.
+struct SymmetricPattern {
+  int size = 0;
+  std::vector<int> column_start;  ///< size + 1
+  std::vector<int> row;
+};
+
+/// Direct solver for symmetric positive definite systems (CHOLMOD, supernodal): one symbolic analysis a pattern,
+/// any number of numeric factorisations. One BLAS thread, so that results do not depend on the machine's load.
+class SparseSolver {
+ public:
+  explicit SparseSolver(SymmetricPattern pattern);
+  ~SparseSolver();
+  SparseSolver(SparseSolver&&) noexcept;
+  SparseSolver& operator=(SparseSolver&&) noexcept;
+
+  const SymmetricPattern& pattern() const;
+  /// Values in the order of pattern().row; fill, then factorise.
+  std::span<double> values();
+  /// False if the matrix is not positive definite (an answer, not an error).
+  bool factorise();
+  /// Solves in place with the last factor. Precondition: factorise() returned true.
+  void solve(std::span<double> right_hand_side);
+  double factor_nonzeros() const;
+  double factor_flops() const;
+
+ private:
+  struct Implementation;
+  std::unique_ptr<Implementation> implementation_;
+};
+
+/// Name of the BLAS behind the solver, with its kernel; and a warning if it is not OpenBLAS ("" if it is).
+struct BlasReport {
+  std::string name;
+  std::string warning;
+};
+BlasReport blas_report();
+
+}  // namespace heddle

@@ -1,0 +1,145 @@
+#include <fmt/format.h>
+
+#include <cmath>
+#include <string>
+
+#include "friction/model.h"
+
+namespace heddle::friction {
+
+namespace {
+
+/// Adds the problem unless the rule holds. Written so that NaN, which satisfies no comparison, breaks every
+/// rule.
+void require(Problems& problems, bool holds, Problem problem) {
+  if (!holds) problems.push_back(std::move(problem));
+}
+
+bool positive(double x) {
+  return x > 0.0 && std::isfinite(x);
+}
+
+void check_film(const PowerLawFilm& film, Problems& problems) {
+  require(problems, positive(film.consistency),
+          {.id = "friction.film.consistency.range",
+           .key = "resin.consistency",
+           .value = fmt::format("{} Pa s^n", film.consistency),
+           .rule = "must satisfy 0 < m",
+           .way_out = "Polypropylene at 180 degC: 6790 Pa s^n."});
+  require(problems, film.index > 0.0 && film.index <= 1.0,
+          {.id = "friction.film.index.range",
+           .key = "resin.power_index",
+           .value = fmt::format("{}", film.index),
+           .rule = "must satisfy 0 < n <= 1",
+           .way_out = "The resin thins with rate (Gorczyca et al., Eq. 4); polypropylene: 0.37 to 0.41."});
+  require(problems, film.thickness > 0.0 && film.thickness < 0.01,
+          {.id = "friction.film.thickness.range",
+           .key = "resin.film_thickness",
+           .value = fmt::format("{} m", film.thickness),
+           .rule = "must satisfy 0 < h < 0.01 m",
+           .way_out = "The paper uses 0.07 mm; write 0.07 mm."});
+  require(problems, film.activation_energy >= 0.0 && film.activation_energy < 1e6,
+          {.id = "friction.film.activation_energy.range",
+           .key = "resin.activation_energy",
+           .value = fmt::format("{} J/mol", film.activation_energy),
+           .rule = "must satisfy 0 <= E < 1000 kJ/mol",
+           .way_out = "Polypropylene melts: 38 to 46 kJ/mol; 0 makes the film insensitive to temperature."});
+  require(
+      problems, positive(film.reference_temperature),
+      {.id = "friction.film.reference_temperature.range",
+       .key = "resin.reference_temperature",
+       .value = fmt::format("{} K", film.reference_temperature),
+       .rule = "must lie above absolute zero",
+       .way_out = "It is the temperature at which resin.consistency was measured, for instance 180 degC."});
+  require(problems, positive(film.rate_floor),
+          {.id = "friction.film.rate_floor.range",
+           .key = "resin.rate_floor",
+           .value = fmt::format("{} 1/s", film.rate_floor),
+           .rule = "must satisfy 0 < g0",
+           .way_out = "Without a floor the viscosity is infinite at rest; 1 1/s lies below every test."});
+}
+
+void check_law(const Coulomb& law, const CalibrationBox&, Problems& problems) {
+  require(problems, law.coefficient >= 0.0 && law.coefficient < 10.0,
+          {.id = "friction.coulomb.coefficient.range",
+           .key = "friction.coefficient",
+           .value = fmt::format("{}", law.coefficient),
+           .rule = "must satisfy 0 <= mu < 10",
+           .way_out = "The paper compares with 0.3."});
+}
+
+void check_law(const HerseyPower& law, const CalibrationBox&, Problems& problems) {
+  require(problems, positive(law.scale),
+          {.id = "friction.power.scale.range",
+           .key = "friction.scale",
+           .value = fmt::format("{}", law.scale),
+           .rule = "must satisfy 0 < C",
+           .way_out = "Let `heddle calibrate` find it from friction tests."});
+  require(problems, std::abs(law.exponent) < 1.0,
+          {.id = "friction.power.exponent.range",
+           .key = "friction.exponent",
+           .value = fmt::format("{}", law.exponent),
+           .rule = "must satisfy -1 < s < 1",
+           .way_out =
+               "From s = 1 on the friction force no longer rises with the load; Table 4 gives about 0.14."});
+}
+
+void check_law(const HerseyLinear& law, const CalibrationBox& box, Problems& problems) {
+  require(problems, positive(law.reference),
+          {.id = "friction.linear.reference.range",
+           .key = "friction.reference_hersey",
+           .value = fmt::format("{}", law.reference),
+           .rule = "must satisfy 0 < Hs0",
+           .way_out = "It is the Hersey number of the baseline test."});
+  // mu is a power of Hs beyond the box, so it is positive everywhere if it is positive within; a straight
+  // line is positive within if it is at both ends. A box without an upper end asks for b >= 0.
+  const double low = law.offset + law.slope * box.hersey_low / law.reference;
+  const double high = law.offset + law.slope * box.hersey_high / law.reference;
+  require(problems, low > 0.0 && high > 0.0,
+          {.id = "friction.linear.positive",
+           .key = "friction.offset",
+           .value = fmt::format("{} (slope {})", law.offset, law.slope),
+           .rule = fmt::format("must give mu > 0 from Hs = {} to {}", box.hersey_low, box.hersey_high),
+           .way_out = "Raise the offset, or calibrate the power form, which cannot turn negative."});
+}
+
+void check_box(const CalibrationBox& box, Problems& problems) {
+  const auto ordered = [](double low, double high) { return 0.0 <= low && low <= high; };
+  require(problems,
+          ordered(box.hersey_low, box.hersey_high) && ordered(box.pressure_low, box.pressure_high) &&
+              ordered(box.speed_low, box.speed_high),
+          {.id = "friction.box.order",
+           .key = "friction.calibration",
+           .value = fmt::format("Hs {}..{}, p {}..{} Pa, U {}..{} m/s", box.hersey_low, box.hersey_high,
+                                box.pressure_low, box.pressure_high, box.speed_low, box.speed_high),
+           .rule = "must satisfy 0 <= low <= high for each",
+           .way_out = "The box is the range of the friction tests behind the law."});
+}
+
+void check_effect(const ToolTemperatureShift& effect, Problems& problems) {
+  require(problems, std::abs(effect.slope) <= 0.1,
+          {.id = "friction.tool_temperature_shift.slope.range",
+           .key = "effects.tool_temperature_shift.slope",
+           .value = fmt::format("{} 1/K", effect.slope),
+           .rule = "must satisfy |slope| <= 0.1 1/K",
+           .way_out = "Table 4 gives -9.3e-4 1/K for the term; 0 switches the effect off."});
+  require(problems, positive(effect.reference),
+          {.id = "friction.tool_temperature_shift.reference.range",
+           .key = "effects.tool_temperature_shift.reference",
+           .value = fmt::format("{} K", effect.reference),
+           .rule = "must lie above absolute zero",
+           .way_out = "The baseline tool temperature is 85 degC."});
+}
+
+}  // namespace
+
+Problems check(const Model& model) {
+  Problems problems;
+  if (!std::holds_alternative<Coulomb>(model.law)) check_film(model.film, problems);
+  std::visit([&](const auto& law) { check_law(law, model.box, problems); }, model.law);
+  check_box(model.box, problems);
+  if (model.effects.tool_temperature_shift) check_effect(*model.effects.tool_temperature_shift, problems);
+  return problems;
+}
+
+}  // namespace heddle::friction

@@ -1,0 +1,167 @@
+#include "macroscale/ledger.h"
+
+#include <numeric>
+
+namespace heddle::macroscale {
+
+namespace {
+
+using Eigen::Vector3d;
+
+struct Increment {
+  double stored = 0.0;     ///< change of energy
+  double work = 0.0;       ///< end-of-step force times increment; the excess over `stored` is numerical dissipation
+};
+
+struct CornerIncrements {
+  Increment tow, shear;
+  double rate = 0.0;
+};
+
+CornerIncrements corner_increments(const System& system, const StepData& step, const State& end) {
+  const Blank& blank = system.scene().blank;
+  const State& start = *step.start;
+  const CornerLaw law = system.corner_law(step);
+  CornerIncrements sum;
+  for (std::size_t q = 0; q < blank.quads.size(); ++q) {
+    const auto corners = corners_of(blank.quads[q]);
+    for (std::size_t k = 0; k < 4; ++k) {
+      const Corner& c = corners[k];
+      const double before = start.corner_angle[4 * q + k];
+      const Vector3d a0 = start.node(c.along_warp) - start.node(c.node), b0 = start.node(c.along_weft) - start.node(c.node);
+      const Vector3d a = end.node(c.along_warp) - end.node(c.node), b = end.node(c.along_weft) - end.node(c.node);
+      const CornerEnergy e0 = corner_energy(law, a0, b0, before), e = corner_energy(law, a, b, before);
+      const CornerGradient g = corner_gradient(law, a, b, before);
+      sum.tow.stored += e.tension - e0.tension;
+      sum.shear.stored += e.shear - e0.shear;
+      sum.tow.work += g.tension_a.dot(a - a0) + g.tension_b.dot(b - b0);
+      sum.shear.work += g.shear_a.dot(a - a0) + g.shear_b.dot(b - b0);
+      sum.rate += g.rate_a.dot(a - a0) + g.rate_b.dot(b - b0);
+    }
+  }
+  return sum;
+}
+
+// 1/2 k (|d1|^2 - |d0|^2) and k d1.(d1 - d0).
+Increment quadratic(double stiffness, const Vector3d& before, const Vector3d& after) {
+  return {0.5 * stiffness * (after.squaredNorm() - before.squaredNorm()), stiffness * after.dot(after - before)};
+}
+
+void add(Increment& sum, const Increment& part) {
+  sum.stored += part.stored;
+  sum.work += part.work;
+}
+
+Increment bending_increment(const System& system, const State& start, const State& end) {
+  Increment sum;
+  for (const TowTriple& t : system.scene().blank.triples) {
+    const auto difference = [&](const State& s) -> Vector3d { return s.node(t.before) - 2.0 * s.node(t.middle) + s.node(t.after); };
+    add(sum, quadratic(system.bending_stiffness(t), difference(start), difference(end)));
+  }
+  return sum;
+}
+
+Increment twist_increment(const System& system, const State& start, const State& end) {
+  Increment sum;
+  for (const auto& q : system.scene().blank.quads) {
+    const auto twist = [&](const State& s) -> Vector3d { return s.node(q[0]) - s.node(q[1]) + s.node(q[2]) - s.node(q[3]); };
+    add(sum, quadratic(system.twist_stiffness(), twist(start), twist(end)));
+  }
+  return sum;
+}
+
+}  // namespace
+
+double StepLedger::dissipated() const {
+  return std::accumulate(friction.begin(), friction.end(), 0.0) + shear_rate + artefact + numerical;
+}
+
+StepAccount account(const System& system, const StepData& step, const State& end) {
+  const Scene& scene = system.scene();
+  const Blank& blank = scene.blank;
+  const State& start = *step.start;
+  StepAccount result;
+  StepLedger& ledger = result.ledger;
+
+  const CornerIncrements corner = corner_increments(system, step, end);
+  const Increment bending = bending_increment(system, start, end), twist = twist_increment(system, start, end);
+  ledger.tow = corner.tow.stored;
+  ledger.shear = corner.shear.stored;
+  ledger.shear_rate = corner.rate;
+  ledger.bending = bending.stored;
+  ledger.twist = twist.stored;
+  ledger.numerical += corner.tow.work - corner.tow.stored + corner.shear.work - corner.shear.stored;
+  ledger.numerical += bending.work - bending.stored + twist.work - twist.stored;
+
+  Vector3d momentum_rate = Vector3d::Zero();
+  for (int k = 0; k < scene.unknowns(); ++k) {
+    const double v0 = start.v[k], v1 = end.v[k], m = system.mass(k);
+    ledger.kinetic += 0.5 * m * (v1 * v1 - v0 * v0);
+    ledger.numerical += 0.5 * m * (v1 - v0) * (v1 - v0);
+    if (k < 3 * blank.nodes()) momentum_rate[k % 3] += m * (v1 - v0) / step.dt;
+  }
+
+  const FrictionSettings settings = system.friction_settings();
+  Vector3d on_blank = Vector3d::Zero();
+  Increment compaction;
+  const bool rubs = scene.friction && !step.frictionless;
+  for (int k = 0; k < static_cast<int>(scene.tools.size()); ++k) {
+    Vector3d on_tool = Vector3d::Zero();
+    double rubbed = 0.0;
+    const double tool_motion = end.tool_z[k] - start.tool_z[k];
+    for (int i = 0; i < blank.nodes(); ++i) {
+      const double area = blank.node_area[i];
+      const Vector3d step_of_node = end.node(i) - start.node(i) - Vector3d(0, 0, tool_motion);
+      const Distance d0 = distance(scene.tools[k].shape, start.node(i) - Vector3d(0, 0, start.tool_z[k]));
+      const Distance d = distance(scene.tools[k].shape, end.node(i) - Vector3d(0, 0, end.tool_z[k]));
+      const NormalContact c0 = normal_contact(system.compaction(), d0.distance, system.half_thickness());
+      const NormalContact c = normal_contact(system.compaction(), d.distance, system.half_thickness());
+      Vector3d gradient = -area * c.pressure * d.normal;
+      compaction.stored += area * (c.energy - c0.energy);
+      compaction.work += gradient.dot(step_of_node);
+      if (rubs && step.friction[k][i].load > 0.0) {
+        const FrictionPoint& point = step.friction[k][i];
+        const Vector3d v = step_of_node / step.dt;
+        const Vector3d drag = friction_force(settings, point, v);
+        const double work = drag.dot(step_of_node);
+        rubbed += work;
+        const double hersey = law_at(settings, point, slip_velocity(point, v).norm()).hersey;
+        friction::Context context = point.context;
+        context.slip_speed = slip_velocity(point, v).norm();
+        if (!scene.friction->box.contains(context, hersey)) ledger.friction_outside += work;
+        gradient += drag;
+      }
+      on_tool += gradient;
+    }
+    ledger.friction.push_back(rubbed);
+    result.forces.on_tool.push_back(on_tool);
+    on_blank -= on_tool;
+    if (scene.tools[k].motion == Motion::driven) ledger.work_driven -= on_tool.z() * tool_motion;
+    if (scene.tools[k].motion == Motion::loaded) ledger.work_loaded -= scene.tools[k].force * tool_motion;
+  }
+  ledger.compaction = compaction.stored;
+  ledger.numerical += compaction.work - compaction.stored;
+
+  if (scene.stabilisation > 0.0)
+    for (int i = 0; i < blank.nodes(); ++i)
+      ledger.artefact += scene.stabilisation * blank.node_area[i] / step.dt * (end.node(i) - start.node(i)).squaredNorm();
+  for (std::size_t k = 0; k < scene.load.size(); ++k) {
+    const Eigen::Index n = static_cast<Eigen::Index>(k);
+    ledger.work_held += scene.load[k] * (end.x[n] - start.x[n]);
+    on_blank[n % 3] += scene.load[k];
+  }
+  if (!scene.held.empty()) {
+    const Eigen::VectorXd support = system.full_gradient(step, end.x);
+    for (std::size_t k = 0; k < scene.held.size(); ++k) {
+      if (!scene.held[k]) continue;
+      const Eigen::Index n = static_cast<Eigen::Index>(k);
+      ledger.work_held += support[n] * (end.x[n] - start.x[n]);
+      result.forces.by_supports[n % 3] += support[n];
+    }
+    on_blank += result.forces.by_supports;
+  }
+  result.forces.imbalance = (on_blank - momentum_rate).norm();
+  return result;
+}
+
+}  // namespace heddle::macroscale

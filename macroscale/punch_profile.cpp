@@ -1,0 +1,41 @@
+#include "macroscale/punch_profile.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace heddle::macroscale {
+
+namespace {
+
+struct Profile {
+  double duration, stop, plateau;  ///< whole time, length of the stop [s], speed before it [m/s]
+};
+
+Profile profile_of(const ProcessSpec& process) {
+  const double duration = process.time / process.speed_scale;
+  const double stop = process.slow_down / process.speed_scale;
+  return {duration, stop, process.stroke / (duration - 0.5 * stop)};
+}
+
+}  // namespace
+
+double stroke_time(const ProcessSpec& process) { return profile_of(process).duration; }
+
+double mean_speed(const ProcessSpec& process) { return process.stroke / profile_of(process).duration; }
+
+double stroke_at_time(const ProcessSpec& process, double time) {
+  const Profile p = profile_of(process);
+  const double t = std::clamp(time, 0.0, p.duration), left = p.duration - t;
+  if (left >= p.stop) return p.plateau * t;
+  return process.stroke - 0.5 * p.plateau * left * left / p.stop;
+}
+
+double time_at_stroke(const ProcessSpec& process, double travel) {
+  const Profile p = profile_of(process);
+  const double left = process.stroke - travel;
+  if (left <= 0.0) return p.duration;
+  if (left >= 0.5 * p.plateau * p.stop) return travel / p.plateau;
+  return p.duration - std::sqrt(2.0 * left * p.stop / p.plateau);
+}
+
+}  // namespace heddle::macroscale

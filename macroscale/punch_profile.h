@@ -1,0 +1,19 @@
+#pragma once
+
+#include "macroscale/stamping.h"
+
+namespace heddle::macroscale {
+
+/// Punch motion: constant speed, then a linear stop over the last part (paper, section 3.2.2: "relatively constant"
+/// and slowing "only in the final 0.01 s"). speed_scale squeezes the whole profile in time.
+
+/// Duration of the stroke [s].
+double stroke_time(const ProcessSpec& process);
+/// Stroke over its time [m/s].
+double mean_speed(const ProcessSpec& process);
+/// Downward travel at a time [m].
+double stroke_at_time(const ProcessSpec& process, double time);
+/// Its inverse [s], for 0 <= travel <= stroke.
+double time_at_stroke(const ProcessSpec& process, double travel);
+
+}  // namespace heddle::macroscale

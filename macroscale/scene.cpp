@@ -1,0 +1,32 @@
+#include "macroscale/scene.h"
+
+namespace heddle::macroscale {
+
+State initial_state(const Scene& scene) {
+  State state;
+  const int nodes = scene.blank.nodes();
+  state.x = Eigen::VectorXd::Zero(scene.unknowns());
+  state.v = Eigen::VectorXd::Zero(scene.unknowns());
+  for (int i = 0; i < nodes; ++i) state.x.segment<3>(3 * i) = scene.blank.reference[i];
+  state.tool_z.assign(scene.tools.size(), 0.0);
+  state.corner_angle.assign(4 * scene.blank.quads.size(), 0.0);
+  state.memory.assign(scene.tools.size(), std::vector<friction::ContactState>(nodes));
+  return state;
+}
+
+std::vector<double> nodal_shear_angle(const Blank& blank, const std::vector<double>& corner_angle) {
+  std::vector<double> sum(blank.nodes(), 0.0);
+  std::vector<int> count(blank.nodes(), 0);
+  for (std::size_t q = 0; q < blank.quads.size(); ++q) {
+    const auto corners = corners_of(blank.quads[q]);
+    for (std::size_t k = 0; k < 4; ++k) {
+      sum[corners[k].node] += corners[k].sign * corner_angle[4 * q + k];
+      ++count[corners[k].node];
+    }
+  }
+  for (std::size_t i = 0; i < sum.size(); ++i)
+    if (count[i] > 0) sum[i] /= count[i];
+  return sum;
+}
+
+}  // namespace heddle::macroscale

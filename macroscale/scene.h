@@ -1,0 +1,61 @@
+#pragma once
+
+#include <array>
+#include <vector>
+
+#include <Eigen/Core>
+
+#include "friction/model.h"
+#include "macroscale/blank.h"
+#include "macroscale/contact.h"
+#include "macroscale/stamping.h"
+#include "macroscale/tools.h"
+#include "mesoscale/fabric_properties.h"
+
+namespace heddle::macroscale {
+
+/// Everything that does not change while the clock runs: blank, tools, laws, supports and loads.
+struct Scene {
+  Blank blank;
+  const mesoscale::FabricProperties* fabric = nullptr;
+  const friction::Model* friction = nullptr;  ///< null = frictionless
+  std::vector<Tool> tools;
+
+  std::vector<char> held;        ///< per unknown 3 i + c: 1 = its position is prescribed; empty = all free
+  std::vector<double> load;      ///< dead force per unknown [N]; empty = none
+
+  double blank_temperature = 453.15;  ///< [K]
+  double tool_temperature = 358.15;   ///< [K]
+  double slip_smoothing = 1e-5;       ///< eps_v [m/s]
+  double mass_scaling = 1.0;          ///< artefact; 1 = true mass
+  double stabilisation = 0.0;         ///< artefact [N s/m^3]
+  bool shear_rate = true;
+  ContactPressure contact_pressure = ContactPressure::real;
+
+  int loaded_tools() const {
+    int n = 0;
+    for (const Tool& tool : tools) n += tool.motion == Motion::loaded;
+    return n;
+  }
+  int unknowns() const { return 3 * blank.nodes() + loaded_tools(); }
+};
+
+/// Where everything is at one instant. Unknowns: 3 a node (x, y, z), then one z a loaded tool.
+struct State {
+  double time = 0.0;                       ///< [s]
+  Eigen::VectorXd x;                       ///< positions [m]
+  Eigen::VectorXd v;                       ///< velocities [m/s]
+  std::vector<double> tool_z;              ///< displacement of each tool along z [m]
+  std::vector<double> corner_angle;        ///< gamma of each corner, 4 a quad [rad]
+  std::vector<std::vector<friction::ContactState>> memory;  ///< per tool, per node
+
+  Eigen::Vector3d node(int i) const { return x.segment<3>(3 * i); }
+};
+
+/// The blank at rest in its reference position, tools where their shapes say.
+State initial_state(const Scene& scene);
+
+/// Trellis angle averaged at the nodes, signed in tow axes [rad].
+std::vector<double> nodal_shear_angle(const Blank& blank, const std::vector<double>& corner_angle);
+
+}  // namespace heddle::macroscale

@@ -1,0 +1,286 @@
+#include "macroscale/solve.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include <fmt/format.h>
+#include <tbb/parallel_for.h>
+
+#include "core/problem.h"
+
+namespace heddle::macroscale {
+
+namespace {
+
+using Eigen::Vector3d;
+using Eigen::VectorXd;
+
+friction::Context context_of(const Scene& scene, double pressure, double shear_angle) {
+  friction::Context context;
+  context.pressure = pressure;
+  context.fabric_temperature = scene.blank_temperature;
+  context.tool_temperature = scene.tool_temperature;
+  if (scene.contact_pressure == ContactPressure::real && !scene.fabric->contact.log_fraction.empty()) {
+    const auto area = scene.fabric->contact.evaluate(pressure, shear_angle);
+    context.area_fraction = area.fraction;
+    context.area_slope = area.slope;
+  }
+  return context;
+}
+
+using FrictionPoints = std::vector<std::vector<FrictionPoint>>;
+
+// Loads, normals and contexts of all points at x: what the next pass holds.
+FrictionPoints freeze(const System& system, const StepData& step, const VectorXd& x, const std::vector<double>& shear_angle) {
+  const Scene& scene = system.scene();
+  const int nodes = scene.blank.nodes();
+  FrictionPoints points(scene.tools.size(), std::vector<FrictionPoint>(nodes));
+  if (step.frictionless || !scene.friction) return points;
+  for (int k = 0; k < static_cast<int>(scene.tools.size()); ++k)
+    tbb::parallel_for(0, nodes, [&, k](int i) {
+      const Distance d = system.tool_distance(step, x, k, i);
+      const NormalContact contact = normal_contact(system.compaction(), d.distance, system.half_thickness());
+      FrictionPoint& point = points[k][i];
+      point.memory = step.start->memory[k][i];
+      if (contact.pressure <= 0.0) return;
+      point.load = contact.pressure * scene.blank.node_area[i];
+      point.normal = d.normal;
+      point.context = context_of(scene, contact.pressure, shear_angle[i]);
+    });
+  return points;
+}
+
+// Sum over all points of the change of the friction force between two frozen sets, over its sum.
+double lag_residual(const System& system, const StepData& step, const VectorXd& x, const FrictionPoints& before,
+                    const FrictionPoints& after) {
+  const FrictionSettings settings = system.friction_settings();
+  double change = 0.0, sum = 0.0;
+  for (int k = 0; k < static_cast<int>(after.size()); ++k)
+    for (int i = 0; i < static_cast<int>(after[k].size()); ++i) {
+      if (after[k][i].load == 0.0 && before[k][i].load == 0.0) continue;
+      const Vector3d v = system.relative_velocity(step, x, k, i);
+      const auto size = [&](const FrictionPoint& p) {
+        return p.load > 0.0 ? p.load * law_at(settings, p, slip_velocity(p, v).norm()).mu : 0.0;
+      };
+      const double now = size(after[k][i]);
+      change += std::abs(now - size(before[k][i]));
+      sum += now;
+    }
+  return sum > 0.0 ? change / sum : 0.0;
+}
+
+double mean_contact_force(const System& system, const StepData& step, const VectorXd& x) {
+  const Scene& scene = system.scene();
+  double sum = 0.0;
+  int touching = 0;
+  for (int k = 0; k < static_cast<int>(scene.tools.size()); ++k)
+    for (int i = 0; i < scene.blank.nodes(); ++i) {
+      const double gap = system.tool_distance(step, x, k, i).distance;
+      const double p = normal_contact(system.compaction(), gap, system.half_thickness()).pressure;
+      if (p <= 0.0) continue;
+      sum += p * scene.blank.node_area[i];
+      ++touching;
+    }
+  return touching > 0 ? sum / touching : 0.0;
+}
+
+struct Largest {
+  double value;
+  int unknown;
+};
+
+Largest largest(const VectorXd& g) {
+  Eigen::Index at = 0;
+  const double value = g.cwiseAbs().maxCoeff(&at);
+  return {value, static_cast<int>(at)};
+}
+
+void demand_finite(const VectorXd& values, const char* quantity, double time) {
+  if (values.allFinite()) return;
+  for (Eigen::Index k = 0; k < values.size(); ++k)
+    if (!std::isfinite(values[k]))
+      throw NumericalError(fmt::format("{} of node {} (component {}) is not finite at t = {:.6g} s", quantity, k / 3, k % 3, time));
+}
+
+// Newton direction. The unfiltered Hessian is tried where the last iteration took a full step (its quadratic tail
+// is worth a failed factorisation now and then), then the projected one, then a growing shift.
+struct Direction {
+  bool found = false;
+  VectorXd dx;
+  bool exact = false;
+};
+
+Direction newton_direction(System& system, const StepData& step, const VectorXd& x, const VectorXd& g, bool try_exact,
+                           int& factorisations) {
+  Direction direction;
+  const auto attempt = [&](Filter filter, double shift) {
+    system.assemble(step, x, filter, shift);
+    ++factorisations;
+    if (!system.solver().factorise()) return false;
+    direction.dx = -g;
+    system.solver().solve({direction.dx.data(), static_cast<std::size_t>(direction.dx.size())});
+    direction.found = direction.dx.allFinite();
+    return direction.found;
+  };
+  if (try_exact && attempt(Filter::none, 0.0)) {
+    direction.exact = true;
+    return direction;
+  }
+  if (attempt(Filter::positive, 0.0)) return direction;
+  const double largest_diagonal = 1e6;  // [N/m], the tow stiffness per node: the scale of the diagonal
+  for (double shift = 1e-6 * largest_diagonal; shift <= largest_diagonal; shift *= 10.0)
+    if (attempt(Filter::positive, shift)) return direction;
+  return direction;
+}
+
+struct Pass {
+  bool converged = false;
+  std::string reason;
+};
+
+// Newton with line search at frozen friction loads.
+Pass minimise(System& system, const StepData& step, VectorXd& x, const SolveOptions& options, double tolerance,
+              StepSummary& summary) {
+  bool full_step = true;
+  VectorXd g = system.gradient(step, x);
+  double energy = system.potential(step, x).total();
+  for (int iteration = 0; iteration <= options.newton_limit; ++iteration) {
+    demand_finite(g, "residual force", step.start->time + step.dt);
+    const Largest worst = largest(g);
+    summary.residual = worst.value;
+    summary.worst_node = worst.unknown / 3;
+    if (worst.value <= tolerance) return {true, "converged"};
+    if (iteration == options.newton_limit) break;
+
+    Direction direction = newton_direction(system, step, x, g, full_step, summary.factorisations);
+    if (!direction.found) return {false, "no descent direction: the matrix stays indefinite under any shift"};
+    ++summary.newton_iterations;
+    const double size = direction.dx.cwiseAbs().maxCoeff();
+    if (size > options.largest_increment) direction.dx *= options.largest_increment / size;
+    const double slope = g.dot(direction.dx);
+
+    double alpha = 1.0;
+    bool accepted = false;
+    for (int k = 0; k < options.line_search_limit; ++k, alpha *= 0.5) {
+      const VectorXd trial = x + alpha * direction.dx;
+      const double trial_energy = system.potential(step, trial).total();
+      const double change = trial_energy - energy + system.friction_difference(step, x, trial);
+      const double rounding = 1e-13 * (std::abs(energy) + 1.0);
+      if (std::isfinite(change) && change <= 1e-4 * alpha * slope + rounding) {
+        x = trial;
+        energy = trial_energy;
+        accepted = true;
+        break;
+      }
+    }
+    if (!accepted) {
+      if (direction.exact) {  // the exact direction may climb where the potential is not convex: project and try again
+        full_step = false;
+        continue;
+      }
+      return {worst.value <= 10.0 * tolerance, "line search found no decrease"};
+    }
+    const double moved = alpha * direction.dx.cwiseAbs().maxCoeff();
+    full_step = alpha == 1.0 && size <= options.largest_increment;
+    g = system.gradient(step, x);
+    if (moved < options.stagnation) {
+      const Largest left = largest(g);
+      summary.residual = left.value;
+      if (left.value <= 10.0 * tolerance) return {true, "converged"};
+      return {false, fmt::format("stagnated with a residual of {:.3g} N at node {}", left.value, left.unknown / 3)};
+    }
+  }
+  return {false, fmt::format("{} Newton iterations left a residual of {:.3g} N at node {}", options.newton_limit,
+                             summary.residual, summary.worst_node)};
+}
+
+void accept(const System& system, const StepData& step, const VectorXd& x, State& end) {
+  const Scene& scene = system.scene();
+  const State& start = *step.start;
+  end.time = start.time + step.dt;
+  end.x = x;
+  end.v = (x - start.x) / step.dt;
+  end.tool_z.resize(scene.tools.size());
+  for (int k = 0; k < static_cast<int>(scene.tools.size()); ++k) end.tool_z[k] = system.tool_position(step, x, k);
+  end.corner_angle.resize(start.corner_angle.size());
+  for (std::size_t q = 0; q < scene.blank.quads.size(); ++q) {
+    const auto corners = corners_of(scene.blank.quads[q]);
+    for (std::size_t k = 0; k < 4; ++k) {
+      const Corner& c = corners[k];
+      end.corner_angle[4 * q + k] = corner_angle(end.node(c.along_warp) - end.node(c.node), end.node(c.along_weft) - end.node(c.node));
+    }
+  }
+  end.memory = start.memory;
+  if (step.frictionless || !scene.friction) return;
+  const FrictionSettings settings = system.friction_settings();
+  for (int k = 0; k < static_cast<int>(scene.tools.size()); ++k)
+    for (int i = 0; i < scene.blank.nodes(); ++i) {
+      const FrictionPoint& point = step.friction[k][i];
+      friction::ContactState& memory = end.memory[k][i];
+      if (point.load == 0.0) continue;
+      const double speed = slip_velocity(point, system.relative_velocity(step, x, k, i)).norm();
+      const auto law = law_at(settings, point, speed);
+      memory = law.state;
+      memory.slip += speed * step.dt;
+      memory.dwell += step.dt;
+      memory.work_per_area += law.mu * point.context.pressure * speed * step.dt;
+    }
+}
+
+}  // namespace
+
+StepSummary advance(System& system, const State& state, double dt, const std::vector<double>& tool_z,
+                    const std::function<void(double, VectorXd&)>& prescribe, const SolveOptions& options, State& end,
+                    StepData& step) {
+  step = StepData{};
+  step.frictionless = options.frictionless;
+  step.dt = dt;
+  step.start = &state;
+  step.target = state.x + dt * state.v;
+  step.tool_z = tool_z;
+
+  // Friction loads of the start: at the tools' old places, where the state is in equilibrium.
+  const std::vector<double> shear_angle = nodal_shear_angle(system.scene().blank, state.corner_angle);
+  StepData old_place = step;
+  old_place.tool_z = state.tool_z;
+  step.friction = freeze(system, old_place, state.x, shear_angle);
+
+  VectorXd x = step.target;
+  if (prescribe) prescribe(state.time + dt, x);
+  StepSummary summary;
+  const double tolerance = std::max(options.force_tolerance, options.relative_tolerance * mean_contact_force(system, old_place, state.x));
+  const bool rubs = system.scene().friction && !step.frictionless;
+  for (int lag = 0; lag < options.lag_limit_iterations; ++lag) {
+    ++summary.lag_iterations;
+    const bool first = rubs && lag == 0;
+    Pass pass = minimise(system, step, x, options, first ? tolerance * options.first_pass_factor : tolerance, summary);
+    if (!pass.converged) {
+      summary.reason = pass.reason;
+      return summary;
+    }
+    if (!rubs) break;
+    FrictionPoints next = freeze(system, step, x, shear_angle);
+    summary.lag_residual = lag_residual(system, step, x, step.friction, next);
+    if (summary.lag_residual < options.lag_tolerance) {
+      if (first) {
+        pass = minimise(system, step, x, options, tolerance, summary);
+        if (!pass.converged) {
+          summary.reason = pass.reason;
+          return summary;
+        }
+      }
+      break;
+    }
+    if (lag + 1 < options.lag_limit_iterations) step.friction = std::move(next);
+  }
+  if (summary.lag_residual > options.lag_limit) {
+    summary.reason = fmt::format("friction loads still move by {:.1f} % after {} updates", 100.0 * summary.lag_residual, summary.lag_iterations);
+    return summary;
+  }
+  summary.converged = true;
+  summary.reason = "converged";
+  accept(system, step, x, end);
+  return summary;
+}
+
+}  // namespace heddle::macroscale

@@ -1,0 +1,227 @@
+#include "macroscale/stamping.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include <fmt/format.h>
+
+#include "macroscale/ledger.h"
+#include "macroscale/punch_profile.h"
+#include "macroscale/quality.h"
+#include "macroscale/scene.h"
+#include "macroscale/solve.h"
+#include "macroscale/system.h"
+
+namespace heddle::macroscale {
+
+namespace {
+
+constexpr int punch = 0, die = 1, binder = 2;  // order of the tools in the scene
+
+Scene stamping_scene(const StampingSpec& spec, const mesoscale::FabricProperties& fabric, const friction::Model& friction) {
+  Scene scene;
+  scene.blank = make_blank(spec.blank.size, spec.blank.spacing, spec.blank.orientation);
+  scene.fabric = &fabric;
+  scene.friction = &friction;
+  const double half = 0.5 * fabric.thickness;
+  scene.tools = {
+      {Role::punch, HemisphereShape{{0.0, 0.0, half}, spec.punch.radius}, Motion::driven, 0.0, 0.0},
+      {Role::die, RingShape{-half, spec.die.opening_radius, spec.die.fillet, true}, Motion::fixed, 0.0, 0.0},
+      {Role::binder, RingShape{half, spec.binder.inner_radius, spec.binder.edge_fillet, false}, Motion::loaded,
+       spec.process.binder_force, spec.binder.mass}};
+  scene.blank_temperature = spec.process.blank_temperature;
+  scene.tool_temperature = spec.process.tool_temperature;
+  // Smoothing follows the punch speed, so a rate-free law stays rate-free; creep while sticking is below
+  // 2e-4 of the stroke.
+  scene.slip_smoothing = std::max(2e-4 * mean_speed(spec.process), 1e-6);
+  scene.mass_scaling = spec.artefact.mass_scaling;
+  scene.stabilisation = spec.artefact.stabilisation;
+  scene.shear_rate = spec.shear_rate;
+  scene.contact_pressure = spec.contact_pressure;
+  return scene;
+}
+
+bool under_binder(const Scene& scene, int node) {
+  const auto& ring = std::get<RingShape>(scene.tools[binder].shape);
+  return scene.blank.reference[node].head<2>().norm() >= ring.opening_radius + ring.fillet;
+}
+
+// Equilibrium under the binder force before the punch moves: uniform pressure as a guess, then two long
+// frictionless steps, after which the velocities are set to rest.
+StepSummary close_binder(System& system, const SolveOptions& options, State& state) {
+  const Scene& scene = system.scene();
+  double area = 0.0;
+  for (int i = 0; i < scene.blank.nodes(); ++i)
+    if (under_binder(scene, i)) area += scene.blank.node_area[i];
+  const double approach = approach_at(system.compaction(), scene.tools[binder].force / area);
+  for (int i = 0; i < scene.blank.nodes(); ++i)
+    if (under_binder(scene, i)) state.x[3 * i + 2] -= approach;
+  state.x[3 * scene.blank.nodes()] = -2.0 * approach;
+
+  SolveOptions closing = options;
+  closing.frictionless = true;
+  StepSummary summary;
+  for (int k = 0; k < 2; ++k) {
+    State end;
+    StepData step;
+    state.v.setZero();
+    summary = advance(system, state, 1.0, state.tool_z, {}, closing, end, step);
+    if (!summary.converged) return summary;
+    state = end;
+  }
+  state.v.setZero();
+  state.time = 0.0;
+  return summary;
+}
+
+void add_to_history(HistoryRow& row, const StepAccount& account, const StepSummary& summary) {
+  const StepLedger& l = account.ledger;
+  row.newton_iterations += summary.newton_iterations;
+  row.lag_iterations += summary.lag_iterations;
+  row.work_punch += l.work_driven;
+  row.work_binder += l.work_loaded;
+  row.energy_tow += l.tow;
+  row.energy_shear += l.shear;
+  row.energy_bending += l.bending;
+  row.energy_twist += l.twist;
+  row.energy_compaction += l.compaction;
+  row.energy_kinetic += l.kinetic;
+  row.friction_punch += l.friction[punch];
+  row.friction_die += l.friction[die];
+  row.friction_binder += l.friction[binder];
+  row.dissipation_shear_rate += l.shear_rate;
+  row.dissipation_artefact += l.artefact;
+  row.dissipation_numerical += l.numerical;
+  row.ledger_residual = ledger_residual(row);
+  row.friction_work_outside += l.friction_outside;
+  row.punch_force = account.forces.on_tool[punch].z();
+  row.die_force = account.forces.on_tool[die].z();
+  row.binder_force = account.forces.on_tool[binder].z();
+  row.force_balance = std::max(row.force_balance, account.forces.imbalance);
+}
+
+void finish_row(HistoryRow& row, const BlankState& blank, const State& state, const Scene& scene) {
+  row.time = state.time;
+  row.punch_displacement = -state.tool_z[punch];
+  row.draw_in_max = largest_draw_in(scene.blank, state);
+  row.shear_angle_max = 0.0;
+  for (double angle : blank.shear_angle) row.shear_angle_max = std::max(row.shear_angle_max, std::abs(angle));
+  row.tow_strain_max = 0.0;
+  for (const auto& strain : blank.tow_strain) row.tow_strain_max = std::max({row.tow_strain_max, strain[0], strain[1]});
+}
+
+// Parts of one step: no more tool motion at once than contact can follow (design: solver 3).
+int parts_of_step(const StampingSpec& spec, double thickness, double spacing) {
+  const double limit = std::min({0.5 * spec.die.fillet, thickness, 1.25 * spacing});
+  return static_cast<int>(std::ceil(spec.process.stroke / spec.process.steps / limit - 1e-9));
+}
+
+class Run {
+ public:
+  Run(const StampingSpec& spec, const mesoscale::FabricProperties& fabric, const friction::Model& friction,
+      const StampingObserver& observe)
+      : spec_(spec), observe_(observe), scene_(stamping_scene(spec, fabric, friction)), system_(scene_), state_(initial_state(scene_)) {}
+
+  StampingResult result() {
+    describe();
+    const StepSummary closed = close_binder(system_, options_, state_);
+    if (!closed.converged) return fail("closing the binder: " + closed.reason);
+    const BlankState blank = blank_state(system_, state_, nullptr);
+    finish_row(row_, blank, state_, scene_);
+    if (observe_) observe_(0, spec_.process.steps, row_, blank);
+    const int parts = parts_of_step(spec_, scene_.fabric->thickness, std::max(scene_.blank.spacing[0], scene_.blank.spacing[1]));
+    for (int step = 1; step <= spec_.process.steps; ++step)
+      if (!advance_to(step, parts)) return fail(reason_);
+    result_.summary.completed = true;
+    return finish();
+  }
+
+ private:
+  void describe() {
+    result_.summary.nodes = scene_.blank.nodes();
+    result_.summary.spacing = scene_.blank.spacing;
+  }
+
+  // One nominal step, in equal parts of time; a part that fails is halved, and the rest goes on with the halves.
+  bool advance_to(int step, int parts) {
+    row_.newton_iterations = row_.lag_iterations = 0;
+    row_.force_balance = 0.0;
+    const double from = state_.time, to = time_at_stroke(spec_.process, spec_.process.stroke * step / spec_.process.steps);
+    long pieces = parts, done = 0;
+    while (done < pieces) {
+      const double next = done + 1 == pieces ? to : from + (to - from) * static_cast<double>(done + 1) / static_cast<double>(pieces);
+      if (advance_part(next - state_.time, next)) {
+        ++done;
+        continue;
+      }
+      ++result_.summary.rejected_steps;
+      pieces *= 2;
+      done *= 2;
+      if ((to - from) / static_cast<double>(pieces) < 1e-7) {
+        reason_ = fmt::format("step {} of {} (punch at {:.2f} mm): {}; the time step fell below 1e-7 s", step, spec_.process.steps,
+                              -1e3 * state_.tool_z[punch], reason_);
+        return false;
+      }
+    }
+    const BlankState blank = blank_state(system_, state_, &last_step_);
+    finish_row(row_, blank, state_, scene_);
+    result_.history.push_back(row_);
+    if (observe_) observe_(step, spec_.process.steps, row_, blank);
+    return true;
+  }
+
+  bool advance_part(double dt, double time) {
+    State end;
+    std::vector<double> tool_z = state_.tool_z;
+    tool_z[punch] = -stroke_at_time(spec_.process, time);
+    StepData step;
+    const StepSummary summary = advance(system_, state_, dt, tool_z, {}, options_, end, step);
+    result_.summary.newton_iterations += summary.newton_iterations;
+    if (!summary.converged) {
+      reason_ = summary.reason;
+      return false;
+    }
+    add_to_history(row_, account(system_, step, end), summary);
+    result_.summary.falling_branch |= on_falling_branch(system_, step, end);
+    peak_force_balance_ = std::max(peak_force_balance_, row_.force_balance);
+    end.time = time;
+    start_ = std::move(state_);
+    state_ = std::move(end);
+    last_step_ = std::move(step);
+    last_step_.start = &start_;
+    return true;
+  }
+
+  StampingResult fail(const std::string& why) {
+    result_.summary.failure = why;
+    return finish();
+  }
+
+  StampingResult finish() {
+    result_.final_state = blank_state(system_, state_, result_.history.empty() ? nullptr : &last_step_);
+    summarise(result_, scene_.blank, state_, spec_, peak_force_balance_);
+    return std::move(result_);
+  }
+
+  const StampingSpec& spec_;
+  const StampingObserver& observe_;
+  Scene scene_;
+  System system_;
+  SolveOptions options_;
+  State state_, start_;
+  StepData last_step_;
+  HistoryRow row_;
+  double peak_force_balance_ = 0.0;
+  std::string reason_;
+  StampingResult result_;
+};
+
+}  // namespace
+
+StampingResult run_stamping(const StampingSpec& spec, const mesoscale::FabricProperties& fabric, const friction::Model& friction,
+                            const StampingObserver& observe) {
+  if (Problems problems = check(spec); !problems.empty()) throw InputError(std::move(problems));
+  return Run(spec, fabric, friction, observe).result();
+}
+
+}  // namespace heddle::macroscale

@@ -1,0 +1,100 @@
+#pragma once
+
+#include <array>
+#include <memory>
+#include <vector>
+
+#include <Eigen/Core>
+
+#include "core/sparse_solver.h"
+#include "macroscale/contact.h"
+#include "macroscale/corner_element.h"
+#include "macroscale/scene.h"
+
+namespace heddle::macroscale {
+
+/// What is held while one time step is solved: where it starts, its length, the frozen friction loads.
+struct StepData {
+  double dt = 0.0;                    ///< [s]
+  const State* start = nullptr;
+  Eigen::VectorXd target;             ///< x_n + dt v_n: where inertia alone would go [m]
+  std::vector<double> tool_z;         ///< end positions of fixed and driven tools [m]
+  bool frictionless = false;          ///< friction switched off for this step (closing the binder)
+  /// Per tool, per node: the lagged friction point (load 0 = no friction).
+  std::vector<std::vector<FrictionPoint>> friction;
+};
+
+/// Energies of the incremental potential at one position [J]; friction only as a difference (see below).
+struct PotentialTerms {
+  double inertia = 0.0, tow = 0.0, shear = 0.0, rate = 0.0, bending = 0.0, twist = 0.0, compaction = 0.0;
+  double loads = 0.0, stabilisation = 0.0;
+  double total() const { return inertia + tow + shear + rate + bending + twist + compaction + loads + stabilisation; }
+};
+
+/// The discrete incremental potential of one scene: value, gradient, Hessian, on a fixed pattern.
+///     E(x) = 1/2 |x - x_n - dt v_n|_M^2 / dt^2 + U(x) + dt R + D + F_b z_b      (design: solver 3)
+class System {
+ public:
+  explicit System(const Scene& scene);
+
+  const Scene& scene() const { return scene_; }
+  int size() const { return size_; }
+
+  PotentialTerms potential(const StepData& step, const Eigen::VectorXd& x) const;
+  /// Change of the friction potential between two positions [J].
+  double friction_difference(const StepData& step, const Eigen::VectorXd& from, const Eigen::VectorXd& to) const;
+  /// dE/dx; at held unknowns it is the force their supports must give [N].
+  Eigen::VectorXd full_gradient(const StepData& step, const Eigen::VectorXd& x) const;
+  /// dE/dx with the entries of held unknowns set to zero.
+  Eigen::VectorXd gradient(const StepData& step, const Eigen::VectorXd& x) const;
+  /// Fills the solver's matrix with d2E/dx2 (held unknowns: identity) plus `shift` on the diagonal.
+  void assemble(const StepData& step, const Eigen::VectorXd& x, Filter filter, double shift = 0.0);
+  SparseSolver& solver() { return *solver_; }
+
+  /// Position of tool k at the end of the step: its own unknown if it is loaded.
+  double tool_position(const StepData& step, const Eigen::VectorXd& x, int k) const;
+  /// Distance from tool k of node i at x.
+  Distance tool_distance(const StepData& step, const Eigen::VectorXd& x, int k, int i) const;
+  /// Velocity of node i against tool k over the step [m/s].
+  Eigen::Vector3d relative_velocity(const StepData& step, const Eigen::VectorXd& x, int k, int i) const;
+  /// Corner law of this step (time step and rate term included).
+  CornerLaw corner_law(const StepData& step) const;
+
+  const Curve& compaction() const { return compaction_; }
+  double half_thickness() const { return 0.5 * scene_.fabric->thickness; }
+  double mass(int unknown) const { return mass_[unknown]; }
+  FrictionSettings friction_settings() const { return {scene_.friction, scene_.slip_smoothing}; }
+  /// Energies and forces of the constant (quadratic) terms.
+  double bending_stiffness(const TowTriple& triple) const;
+  double twist_stiffness() const;
+
+ private:
+  void build_pattern();
+  void assemble_constant();
+  void add_corners(const StepData& step, const Eigen::VectorXd& x, Filter filter);
+  void add_contact(const StepData& step, const Eigen::VectorXd& x, Filter filter);
+  void write_matrix(double shift);
+  int block(int row_node, int column_node) const;
+
+  const Scene& scene_;
+  int size_ = 0;
+  Curve compaction_;                     ///< of one face at gamma = 0
+  std::vector<double> mass_;             ///< per unknown [kg]
+  std::vector<int> body_;                ///< per tool: its unknown, or -1
+
+  // Blocks of the lower triangle by node columns: rows >= column, 3 x 3 each, column-major.
+  std::vector<int> block_start_, block_row_;
+  std::vector<double> constant_;         ///< bending and twist
+  std::vector<double> blocks_;
+  std::vector<std::vector<double>> body_row_;  ///< coupling of each loaded tool with every node unknown
+  std::vector<double> body_diagonal_;
+  struct CornerSlots {
+    std::array<int, 6> slot;     ///< cc, aa, bb, ac, bc, ab
+    std::array<bool, 6> flipped;  ///< stored transposed because the row must be the larger node
+  };
+  std::vector<CornerSlots> corner_slots_;      ///< 4 a quad
+  std::array<std::vector<int>, 4> colours_;    ///< quads that share no node, assembled in parallel without locks
+  std::unique_ptr<SparseSolver> solver_;
+};
+
+}  // namespace heddle::macroscale

@@ -1,0 +1,62 @@
+#pragma once
+
+#include <string>
+#include <variant>
+
+#include <Eigen/Core>
+
+namespace heddle::macroscale {
+
+/// Signed distance to a rigid surface (positive outside the tool), its unit normal (gradient) and its Hessian.
+struct Distance {
+  double distance;             ///< [m]
+  Eigen::Vector3d normal;      ///< away from the tool
+  Eigen::Matrix3d curvature;   ///< second derivative of the distance [1/m]
+};
+
+/// Half space below the plane through `point` with outward normal `normal` (unit).
+struct PlaneShape {
+  Eigen::Vector3d point = Eigen::Vector3d::Zero();
+  Eigen::Vector3d normal = Eigen::Vector3d::UnitZ();
+};
+
+/// Infinite cylinder, axis along y.
+struct CylinderShape {
+  Eigen::Vector3d centre = Eigen::Vector3d::Zero();
+  double radius = 1.0;  ///< [m]
+};
+
+/// Hemisphere with its apex down at `apex`, carried on by a cylinder above its centre. C1.
+struct HemisphereShape {
+  Eigen::Vector3d apex = Eigen::Vector3d::Zero();
+  double radius = 1.0;  ///< [m]
+};
+
+/// Plate with a round opening and a rounded edge, C1. `up`: solid below the plane z = level (a die);
+/// otherwise solid above it (a binder).
+struct RingShape {
+  double level = 0.0;           ///< z of the flat face [m]
+  double opening_radius = 1.0;  ///< [m]
+  double fillet = 0.1;          ///< [m]
+  bool up = true;
+};
+
+using Shape = std::variant<PlaneShape, CylinderShape, HemisphereShape, RingShape>;
+
+Distance distance(const Shape& shape, const Eigen::Vector3d& x);
+
+/// How a tool moves: along z only. `driven` follows a prescribed position, `loaded` is a rigid body pressed down by
+/// a constant force.
+enum class Motion { fixed, driven, loaded };
+
+enum class Role { punch, die, binder };
+
+struct Tool {
+  Role role = Role::die;
+  Shape shape;
+  Motion motion = Motion::fixed;
+  double force = 0.0;  ///< downwards, for Motion::loaded [N]
+  double mass = 0.0;   ///< for Motion::loaded [kg]
+};
+
+}  // namespace heddle::macroscale

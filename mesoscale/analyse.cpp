@@ -1,0 +1,66 @@
+#include <fmt/format.h>
+
+#include "mesoscale/cell_spec.h"
+#include "mesoscale/contact.h"
+#include "mesoscale/forming.h"
+
+namespace heddle::mesoscale {
+
+namespace {
+
+// Constants that no source of ours measures for this fabric.
+std::vector<std::string> priors() {
+  return {"forming.compaction_modulus", "forming.compaction_exponent", "forming.tow_friction",
+          "forming.reference_tension",  "forming.in_tow_shear_share",  "forming.bonding",
+          "forming.compression_ratio",  "weave.fibre_diameter",        "resin.consistency",
+          "resin.power_index",          "resin.activation_energy",     "compaction.packing",
+          "compaction.packing_modulus", "tension.straightening",       "shear.ramp_angle"};
+}
+
+CellSummary summarise(const FormingModels& models, const MassBalance& mass, const CompactionLaw& law) {
+  const FabricGeometry& fabric = models.fabric;
+  const CrossingGeometry& crossing = fabric.crossing;
+  CellSummary summary;
+  summary.areal_density = mass.areal_density;
+  for (std::size_t i = 0; i < 2; ++i) {
+    summary.crimp[i] = fabric.interlacing[i] * crossing.path.crimp();
+    summary.crimp_angle[i] = crossing.path.angle;
+  }
+  summary.gap_closure_angle = gap_closure_angle(crossing);
+  summary.tow_fibre_volume_fraction = crossing.fibre_fraction;
+  summary.tow_solid_volume_fraction = fabric.tow_solid_fraction;
+  summary.contact_area_fraction = plate_contact(fabric, law, 0.0).touched_fraction(0.05e-3);
+  summary.tow_section_area = crossing.section.area();
+  summary.consolidated_thickness = mass.consolidated_thickness;
+  return summary;
+}
+
+}  // namespace
+
+CellResult analyse(const CellSpec& spec) {
+  if (Problems problems = check(spec); !problems.empty()) throw InputError(std::move(problems));
+  const FormingModels models = forming_models(spec);
+  const FabricGeometry& fabric = models.fabric;
+  ContactTables contact = contact_tables(fabric, models.compaction);
+
+  CellResult result;
+  result.summary = summarise(models, fabric.mass, models.compaction);
+  FabricProperties& out = result.fabric;
+  out.areal_density = fabric.mass.areal_density;
+  out.pitch = {fabric.crossing.pitch, fabric.crossing.pitch};
+  out.thickness = fabric.thickness;
+  out.tension_energy = tabulate(models.tension);
+  out.shear_stress = tabulate(models.shear, sine_grid(fabric));
+  out.shear_rate = shear_rate(fabric, spec.resin, spec.forming.in_tow_shear_share);
+  for (std::size_t i = 0; i < 2; ++i) out.bending[i] = constant_in_temperature(models.bending[i].value);
+  out.compaction = std::move(contact.compaction);
+  out.contact = std::move(contact.contact);
+  out.provenance = {specification_hash(spec), priors(), contact.grid_error};
+  result.summary.locking_angle = locking_angle(out.shear_stress);
+
+  if (Problems problems = check(out); !problems.empty())
+    throw NumericalError("unit cell: a table breaks its own rule\n" + format(problems));
+  return result;
+}
+
+}  // namespace heddle::mesoscale

@@ -1,0 +1,98 @@
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <vector>
+
+#include "mesoscale/cell_spec.h"
+#include "mesoscale/closure.h"
+#include "mesoscale/path.h"
+#include "mesoscale/section.h"
+#include "mesoscale/weave.h"
+
+namespace heddle::mesoscale {
+
+/// Geometry of one crossing at a trellis angle g. Everything stands in the parameter plane (xi, eta) of an
+/// orthogonal cell of the same pitch; the fabric is its image under x = xi + eta sin g, y = eta cos g. The
+/// map is one-to-one, so tows that are apart stay apart, and it scales all areas by cos g.
+struct CrossingGeometry {
+  double shear_angle = 0.0;     ///< g [rad]
+  double pitch = 0.0;           ///< p [m]
+  LensSection section{};        ///< width in the parameter plane, w_o = min(w / cos g, p)
+  ArcPath path{};               ///< where a tow changes sides; h = t
+  double fibre_fraction = 0.0;  ///< V0, glass in the stress-free tow [-]
+};
+
+/// The fabric as the later rooms read it: one state, no shear yet.
+struct FabricGeometry {
+  WeaveMatrix weave;
+  QuarterShares quarters{};
+  std::array<double, 2> interlacing{};  ///< {warp, weft} [-]
+  MassBalance mass;
+  double as_woven_crimp = 0.0;  ///< mean of both directions [-]
+  double tow_solid_fraction = 0.0;
+  double thickness = 0.0;     ///< H of the state [m]
+  CrossingGeometry crossing;  ///< at g = 0
+};
+
+/// @throws InputError  if weave.pattern is unknown
+FabricGeometry fabric_geometry(const WeaveSpec& weave, CellState state);
+
+/// Trellis angle at which neighbouring tows touch, acos(w / p) [rad].
+double gap_closure_angle(const CrossingGeometry& unsheared);
+
+/// The crossing at trellis angle g (sign ignored), |g| < 90 deg. Until the gap closes, the tow turns
+/// unchanged; from there its true width is p cos g at constant thickness, and V0 rises by cos g* / cos g
+/// (drained: resin that has no room flows into the pores between the tows).
+CrossingGeometry sheared(const CrossingGeometry& unsheared, double shear_angle);
+
+/// One repeat with every tow, for sampling, pictures and the penetration check. Lengths in the parameter
+/// plane.
+struct UnitCell {
+  WeaveMatrix weave;
+  double pitch;
+  Section section;
+  Path path;
+  double shear_angle;  ///< [rad]
+
+  double crimp_height() const { return height(path); }
+  std::array<double, 2> size() const {
+    return {pitch * weave.wefts, pitch * weave.warps};
+  }  ///< along {xi, eta}
+  /// Point of the fabric plane above (xi, eta) [m].
+  std::array<double, 2> place(double xi, double eta) const;
+};
+
+UnitCell unit_cell(const FabricGeometry& fabric, double shear_angle);
+
+/// Height of a tow's centreline above the mid-plane at distance `along` from the tow's first crossing [m].
+double warp_centre(const UnitCell& cell, int warp, double along);
+double weft_centre(const UnitCell& cell, int weft, double along);
+
+/// What stands above one point of the parameter plane. Warp i runs along xi at eta = i p, weft j along eta at
+/// xi = j p; at most one of each covers a point.
+struct Column {
+  bool warp = false, weft = false;                                              ///< is there one
+  double warp_top = 0.0, warp_bottom = 0.0, weft_top = 0.0, weft_bottom = 0.0;  ///< z [m]
+};
+Column column(const UnitCell& cell, double xi, double eta);
+
+/// How far tows reach into each other on an even grid of samples per pitch.
+struct Penetration {
+  double depth;       ///< largest overlap of two tows in z; 0 = they touch, negative = apart [m]
+  double volume;      ///< positive overlaps [m^3 per repeat]
+  double tow_volume;  ///< all tows, sampled on the same grid [m^3 per repeat]
+};
+Penetration penetration(const UnitCell& cell, int samples_per_pitch);
+
+/// Upper and lower face on n x n samples of one repeat (cell centres of the parameter plane), row-major, xi
+/// fastest.
+struct HeightField {
+  int n = 0;
+  std::array<double, 2> along_warp{}, along_weft{};  ///< edges of the repeat in the fabric plane [m]
+  std::vector<double> top, bottom;                   ///< z [m]; 0 where no tow is
+  std::vector<std::uint8_t> covered;                 ///< 1 where a tow is
+};
+HeightField height_field(const UnitCell& cell, int n);
+
+}  // namespace heddle::mesoscale

@@ -1,0 +1,81 @@
+#pragma once
+
+#include <array>
+#include <string>
+
+#include "core/problem.h"
+#include "mesoscale/fabric_properties.h"
+
+namespace heddle::mesoscale {
+
+/// What the user says of the weave (paper, Table 1). SI units.
+struct WeaveSpec {
+  std::string pattern = "plain";      ///< "plain", "twill m/n", "satin N/k"
+  double tow_width = 4.64e-3;         ///< w [m]
+  double gap = 0.75e-3;               ///< g [m]
+  double tow_thickness = 0.75e-3;     ///< t [m]
+  double fabric_thickness = 1.5e-3;   ///< H [m]
+  double linear_density = 1872e-6;    ///< of one commingled tow [kg/m]
+  double fibre_mass_fraction = 0.60;  ///< glass / (glass + resin) [-]
+  double fibre_density = 2550.0;      ///< [kg/m^3]
+  double resin_density = 905.0;       ///< [kg/m^3]
+  double fibre_modulus = 72.4e9;      ///< [Pa]
+  double fibre_diameter = 18.5e-6;    ///< [m], recalled
+};
+
+enum class CellState { as_woven, consolidated };
+
+/// Melt of the resin between crossing tows: power law with an Arrhenius shift. SI units.
+struct ResinSpec {
+  double consistency = 6790.0;            ///< m [Pa s^n] at the reference temperature
+  double power_index = 0.38;              ///< n [-]
+  double film_thickness = 0.07e-3;        ///< h [m] (paper, section 2)
+  double activation_energy = 42.0e3;      ///< [J/mol]
+  double reference_temperature = 453.15;  ///< [K]
+};
+
+/// Constants of the forming laws that no source of ours measures: priors, each reported as unverified.
+struct FormingSpec {
+  double compaction_modulus = 3.2e6;  ///< k E of sigma = k E (V^n - V0^n) [Pa]
+  double compaction_exponent = 5.0;   ///< n [-]; 3 random, 5 planar, larger for bundles (Toll)
+  double tow_friction = 0.2;          ///< mu_t between crossing tows (lubricated) [-]
+  double reference_tension = 200.0;   ///< tow tension per width at which the shear energy is taken [N/m]
+  double in_tow_shear_share = 0.5;    ///< s_in: 0 = tows turn rigidly, 1 = they shear inside [-]
+  double bonding = 0.3;               ///< chi: 0 = fibres slide freely in bending, 1 = bonded [-]
+  double compression_ratio = 0.01;    ///< tangent in compression over tangent in tension [-]
+};
+
+struct CellSpec {
+  WeaveSpec weave;
+  CellState state = CellState::as_woven;
+  ResinSpec resin;
+  FormingSpec forming;
+};
+
+/// The first stage's answer: what the report shows of the cell.
+struct CellSummary {
+  double areal_density = 0.0;              ///< [kg/m^2]
+  std::array<double, 2> crimp{};           ///< l/p - 1, {warp, weft} [-]
+  std::array<double, 2> crimp_angle{};     ///< [rad]
+  double gap_closure_angle = 0.0;          ///< trellis angle at which neighbouring tows touch [rad]
+  double locking_angle = 0.0;              ///< shear tangent 10 times its value at 20 deg [rad]
+  double tow_fibre_volume_fraction = 0.0;  ///< [-]
+  double tow_solid_volume_fraction = 0.0;  ///< glass and resin [-]
+  double contact_area_fraction = 0.0;      ///< one face, depth 0.05 mm, gamma 0 [-]
+  double tow_section_area = 0.0;           ///< vertical cut [m^2]
+  double consolidated_thickness = 0.0;     ///< [m]
+};
+
+struct CellResult {
+  CellSummary summary;
+  FabricProperties fabric;
+};
+
+/// Everything wrong with the specification (keys are dotted paths of the configuration file).
+Problems check(const CellSpec& spec);
+
+/// The whole mesoscale stage: geometry, mass balance, forming laws, contact.
+/// @throws InputError  if check(spec) finds something
+CellResult analyse(const CellSpec& spec);
+
+}  // namespace heddle::mesoscale

@@ -1,0 +1,55 @@
+#include "mesoscale/compaction.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace heddle::mesoscale {
+
+namespace {
+
+// Integral of K (V/Vp - 1)^2 / V^2 from Vp to V; zero below Vp.
+double packing_work(const CompactionLaw& law, double v) {
+  const double p = law.packing;
+  if (v <= p) return 0.0;
+  const auto primitive = [p](double x) { return x / (p * p) - 2.0 * std::log(x) / p - 1.0 / x; };
+  return law.packing_modulus * (primitive(v) - primitive(p));
+}
+
+}  // namespace
+
+CompactionLaw::Value CompactionLaw::evaluate(double fibre_fraction) const {
+  const double bed = modulus * std::pow(fibre_fraction, exponent);
+  const double excess = std::max(fibre_fraction / packing - 1.0, 0.0);
+  return {bed + packing_modulus * excess * excess,
+          exponent * bed / fibre_fraction + 2.0 * packing_modulus * excess / packing};
+}
+
+TowSqueeze::TowSqueeze(const CompactionLaw& law, double thickness, double fibre_fraction)
+    : law_(law),
+      thickness_(thickness),
+      fibre_fraction_(fibre_fraction),
+      start_(law.evaluate(fibre_fraction)) {}
+
+TowSqueeze::Value TowSqueeze::evaluate(double squeeze) const {
+  if (squeeze <= 0.0) return {0.0, 0.0, 0.0};
+  const double v0 = fibre_fraction_, left = thickness_ - squeeze;
+  const double v = v0 * thickness_ / left;
+  const CompactionLaw::Value now = law_.evaluate(v);
+  // d delta = V0 t dV / V^2 turns the work into integrals of V^(n-2) and of the packing term over V^2.
+  const double n = law_.exponent;
+  const double bed_work = law_.modulus * (std::pow(v, n - 1.0) - std::pow(v0, n - 1.0)) / (n - 1.0);
+  const double packing = packing_work(law_, v) - packing_work(law_, v0);
+  return {v0 * thickness_ * (bed_work + packing) - start_.stress * squeeze, now.stress - start_.stress,
+          now.slope * v / left};
+}
+
+double TowSqueeze::stress(double squeeze) const {
+  if (squeeze <= 0.0) return 0.0;
+  return law_.evaluate(fibre_fraction_ * thickness_ / (thickness_ - squeeze)).stress - start_.stress;
+}
+
+double TowSqueeze::squeeze_at(double fibre_fraction_reached) const {
+  return thickness_ * (1.0 - fibre_fraction_ / fibre_fraction_reached);
+}
+
+}  // namespace heddle::mesoscale

@@ -1,0 +1,71 @@
+#pragma once
+
+#include <array>
+#include <cmath>
+#include <string>
+#include <vector>
+
+#include "core/curve.h"
+#include "core/problem.h"
+#include "core/surface.h"
+
+namespace heddle::mesoscale {
+
+/// Rate-dependent part of the shear resistance, as one dissipation potential per initial area:
+///     R = m_s(T) / (n + 1) |gdot|^(n+1)      [W/m^2]
+/// crossover film and in-tow flow together (design mesoscale 3.3, T_visc).
+struct ShearRate {
+  double consistency = 0.0;               ///< m_s at the reference temperature [N s^n / m]
+  double index = 1.0;                     ///< n [-]
+  double activation_temperature = 0.0;    ///< E / R_gas of the Arrhenius shift [K]
+  double reference_temperature = 453.15;  ///< [K]
+
+  double consistency_at(double temperature) const {
+    return consistency * std::exp(activation_temperature * (1.0 / temperature - 1.0 / reference_temperature));
+  }
+};
+
+/// Where a fabric touches a flat tool: real over nominal contact area of one face, phi(p, gamma, theta).
+/// Stored as ln phi against ln p for several shear angles, so that beyond the table the log slope is held.
+struct ContactArea {
+  CurveFamily log_fraction;  ///< ln phi against ln(p / 1 Pa); parameter: trellis shear angle [rad]
+
+  struct Value {
+    double fraction;  ///< phi [-], 0..1
+    double slope;     ///< d phi / d p [1/Pa]
+  };
+  /// @param pressure  nominal pressure [Pa], > 0
+  /// @param shear_angle  trellis shear angle [rad], sign ignored
+  /// @param sliding_angle  slip direction against the warp [rad]. The area does not depend on it (an area has
+  /// no
+  ///        direction); drag does, and the argument is here so that such a table can take this place.
+  Value evaluate(double pressure, double shear_angle, double sliding_angle = 0.0) const;
+};
+
+/// Where numbers come from: hash of the specification, and how far a finer grid would move them.
+struct Provenance {
+  std::string specification;            ///< hash of the resolved cell specification
+  std::vector<std::string> unverified;  ///< names of constants that are priors, not measurements
+  double grid_error = 0.0;  ///< largest relative change of contact and compaction against half the grid
+};
+
+/// All that the macroscale learns of the fabric. SI units; axes 1 = warp, 2 = weft. Per-area quantities use
+/// the initial (unsheared, unstretched) area.
+struct FabricProperties {
+  double areal_density = 0.0;     ///< glass + resin [kg/m^2]
+  std::array<double, 2> pitch{};  ///< tow width + gap, {warp, weft} [m]
+  double thickness = 0.0;         ///< stress-free fabric thickness H [m]
+
+  Surface tension_energy;  ///< w(e1, e2) [J/m^2], engineering strains; n_i = dw/de_i [N/m]
+  Curve shear_stress;      ///< dPsi/ds [N/m] against s = sin(gamma) in [0, 1); odd in s
+  ShearRate shear_rate;
+  std::array<Curve, 2> bending;  ///< B [N m] against temperature [K], {along warp, along weft}
+  CurveFamily compaction;  ///< pressure [Pa] against approach d [m] of ONE face; h = H - 2 d; parameter gamma
+  ContactArea contact;
+  Provenance provenance;
+};
+
+/// Tables that are not monotone where they must be, not finite, or not convex.
+Problems check(const FabricProperties& fabric);
+
+}  // namespace heddle::mesoscale

@@ -1,0 +1,45 @@
+#include "mesoscale/forming.h"
+
+#include <fmt/format.h>
+
+namespace heddle::mesoscale {
+
+FormingModels forming_models(const CellSpec& spec) {
+  FormingModels models;
+  models.fabric = fabric_geometry(spec.weave, spec.state);
+  models.compaction = {spec.forming.compaction_modulus, spec.forming.compaction_exponent};
+  models.bending =
+      bending_stiffness(fabric_geometry(spec.weave, CellState::consolidated),
+                        {spec.weave.fibre_modulus, spec.weave.fibre_diameter, spec.forming.bonding});
+  TensionOptions options;
+  options.fibre_modulus = spec.weave.fibre_modulus;
+  options.compression_ratio = spec.forming.compression_ratio;
+  options.bending_stiffness = 0.5 * (models.bending[0].value + models.bending[1].value);
+  models.tension = tension_model(models.fabric, models.compaction, options);
+  models.shear = {models.fabric, models.compaction, models.tension, spec.forming.reference_tension,
+                  spec.forming.tow_friction};
+  return models;
+}
+
+std::string describe(const CellSpec& spec) {
+  const WeaveSpec& w = spec.weave;
+  const ResinSpec& r = spec.resin;
+  const FormingSpec& f = spec.forming;
+  // Shortest text that reads back to the same double, so equal bits give equal text.
+  return fmt::format(
+      "weave {} {} {} {} {} {} {} {} {} {} {};state {};resin {} {} {} {} {};forming {} {} {} {} {} {} {}",
+      w.pattern, w.tow_width, w.gap, w.tow_thickness, w.fabric_thickness, w.linear_density,
+      w.fibre_mass_fraction, w.fibre_density, w.resin_density, w.fibre_modulus, w.fibre_diameter,
+      spec.state == CellState::as_woven ? "as_woven" : "consolidated", r.consistency, r.power_index,
+      r.film_thickness, r.activation_energy, r.reference_temperature, f.compaction_modulus,
+      f.compaction_exponent, f.tow_friction, f.reference_tension, f.in_tow_shear_share, f.bonding,
+      f.compression_ratio);
+}
+
+std::string specification_hash(const CellSpec& spec) {
+  std::uint64_t hash = 14695981039346656037ULL;
+  for (const char c : describe(spec)) hash = (hash ^ static_cast<unsigned char>(c)) * 1099511628211ULL;
+  return fmt::format("{:016x}", hash);
+}
+
+}  // namespace heddle::mesoscale

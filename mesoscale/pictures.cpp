@@ -1,0 +1,132 @@
+#include "mesoscale/pictures.h"
+
+#include <cmath>
+
+namespace heddle::mesoscale {
+
+namespace {
+
+// One tow as a tube: rings of 2 x across vertices (upper face one way, lower face back, the edges shared).
+class TubeBuilder {
+ public:
+  TubeBuilder(const UnitCell& cell, TowDirection direction, int index, int stations, int across)
+      : cell_(cell), direction_(direction), index_(index), stations_(stations), across_(across) {}
+
+  void append_to(TriMesh& mesh) const {
+    const int first = static_cast<int>(mesh.vertices.size());
+    for (int s = 0; s <= stations_; ++s)
+      for (int k = 0; k < ring(); ++k) mesh.vertices.push_back(vertex(s, k));
+    for (int s = 0; s < stations_; ++s)
+      for (int k = 0; k < ring(); ++k) {
+        const int a = first + s * ring() + k, b = first + s * ring() + (k + 1) % ring();
+        add(mesh, {a, b, a + ring()});
+        add(mesh, {b, b + ring(), a + ring()});
+      }
+    add_cap(mesh, first, false);
+    add_cap(mesh, first + stations_ * ring(), true);
+  }
+
+ private:
+  int ring() const { return 2 * across_; }
+  bool is_warp() const { return direction_ == TowDirection::warp; }
+
+  std::array<double, 3> vertex(int station, int k) const {
+    const int tows = is_warp() ? cell_.weave.wefts : cell_.weave.warps;
+    const double along = tows * cell_.pitch * station / stations_;
+    const bool upper = k <= across_;
+    const int strip = upper ? k : ring() - k;
+    // Even in the angle, so that strips are narrow where the section is thin.
+    const double across = -0.5 * width(cell_.section) * std::cos(std::acos(-1.0) * strip / across_);
+    const double half = strip == 0 || strip == across_ ? 0.0 : half_height(cell_.section, across);
+    const double centre = is_warp() ? warp_centre(cell_, index_, along) : weft_centre(cell_, index_, along);
+    const double side = index_ * cell_.pitch + across;
+    const std::array<double, 2> at = is_warp() ? cell_.place(along, side) : cell_.place(side, along);
+    return {at[0], at[1], centre + (upper ? half : -half)};
+  }
+
+  // Weft runs along eta and is wide along xi: the opposite hand of warp.
+  void add(TriMesh& mesh, std::array<int, 3> triangle) const {
+    if (is_warp()) std::swap(triangle[1], triangle[2]);
+    mesh.triangles.push_back(triangle);
+  }
+
+  void add_cap(TriMesh& mesh, int start, bool at_end) const {
+    const auto face = [&](int a, int b, int c) {
+      if (at_end) std::swap(b, c);
+      add(mesh, {start + a, start + b, start + c});
+    };
+    for (int k = 0; k < across_; ++k) {
+      const int below = (ring() - k) % ring(), below_next = ring() - k - 1;
+      if (k > 0) face(k, below, k + 1);
+      if (k + 1 < across_) face(k + 1, below, below_next);
+    }
+  }
+
+  const UnitCell& cell_;
+  TowDirection direction_;
+  int index_, stations_, across_;
+};
+
+double tetrahedron(const std::array<double, 3>& a, const std::array<double, 3>& b,
+                   const std::array<double, 3>& c) {
+  return (a[0] * (b[1] * c[2] - b[2] * c[1]) + a[1] * (b[2] * c[0] - b[0] * c[2]) +
+          a[2] * (b[0] * c[1] - b[1] * c[0])) /
+         6.0;
+}
+
+Outline warp_band(const UnitCell& cell, int warp, int points_per_pitch) {
+  Outline band{TowDirection::warp, {}};
+  const int steps = points_per_pitch * cell.weave.wefts;
+  const double half = half_height(cell.section, 0.0);
+  for (int k = 0; k <= steps; ++k) {
+    const double along = cell.pitch * k / points_per_pitch;
+    band.points.push_back({along, warp_centre(cell, warp, along) + half});
+  }
+  for (int k = steps; k >= 0; --k) {
+    const double along = cell.pitch * k / points_per_pitch;
+    band.points.push_back({along, warp_centre(cell, warp, along) - half});
+  }
+  return band;
+}
+
+Outline weft_section(const UnitCell& cell, int warp, int weft, int points_per_pitch) {
+  Outline section{TowDirection::weft, {}};
+  const double w = width(cell.section), centre = weft_centre(cell, weft, warp * cell.pitch);
+  for (int k = 0; k < 2 * points_per_pitch; ++k) {
+    const bool upper = k < points_per_pitch;
+    const double share = static_cast<double>(upper ? k : 2 * points_per_pitch - k) / points_per_pitch;
+    const double across = w * (share - 0.5);
+    const double half = half_height(cell.section, across);
+    section.points.push_back({weft * cell.pitch + across, centre + (upper ? half : -half)});
+  }
+  return section;
+}
+
+}  // namespace
+
+double volume(const TriMesh& mesh) {
+  double sum = 0.0;
+  for (const std::array<int, 3>& t : mesh.triangles)
+    sum += tetrahedron(mesh.vertices[static_cast<std::size_t>(t[0])],
+                       mesh.vertices[static_cast<std::size_t>(t[1])],
+                       mesh.vertices[static_cast<std::size_t>(t[2])]);
+  return sum;
+}
+
+TriMesh tow_surfaces(const UnitCell& cell, int along, int across) {
+  TriMesh mesh;
+  for (int i = 0; i < cell.weave.warps; ++i)
+    TubeBuilder(cell, TowDirection::warp, i, along * cell.weave.wefts, across).append_to(mesh);
+  for (int j = 0; j < cell.weave.wefts; ++j)
+    TubeBuilder(cell, TowDirection::weft, j, along * cell.weave.warps, across).append_to(mesh);
+  return mesh;
+}
+
+std::vector<Outline> warp_cut(const UnitCell& cell, int warp, int points_per_pitch) {
+  std::vector<Outline> cut{warp_band(cell, warp, points_per_pitch)};
+  // The last weft closes the picture: it is the first of the next repeat.
+  for (int j = 0; j <= cell.weave.wefts; ++j) cut.push_back(weft_section(cell, warp, j, points_per_pitch));
+  return cut;
+}
+
+}  // namespace heddle::mesoscale

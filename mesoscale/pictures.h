@@ -1,0 +1,38 @@
+#pragma once
+
+#include <array>
+#include <vector>
+
+#include "mesoscale/cell.h"
+
+namespace heddle::mesoscale {
+
+/// Triangles with shared vertices, outward normals (counter-clockwise seen from outside). [m]
+struct TriMesh {
+  std::vector<std::array<double, 3>> vertices;
+  std::vector<std::array<int, 3>> triangles;
+};
+
+/// Signed volume by the divergence theorem; that of the bodies where the surfaces are closed [m^3].
+double volume(const TriMesh& mesh);
+
+/// Surfaces of all tows of one repeat, each closed, in the sheared fabric plane: sections are swept along the
+/// path and flat at the ends of the repeat.
+/// @param along   stations per pitch
+/// @param across  strips over the tow width
+TriMesh tow_surfaces(const UnitCell& cell, int along = 24, int across = 16);
+
+enum class TowDirection { warp, weft };
+
+/// A closed outline in the plane of a cut: {distance along the cut, z} [m].
+struct Outline {
+  TowDirection tow;
+  std::vector<std::array<double, 2>> points;
+};
+
+/// What a vertical cut along the middle of warp `warp` shows: the warp as a band, the wefts as their
+/// sections. Distances are along xi, in which an oblique cut through a sheared fabric keeps the parameter
+/// width.
+std::vector<Outline> warp_cut(const UnitCell& cell, int warp = 0, int points_per_pitch = 48);
+
+}  // namespace heddle::mesoscale

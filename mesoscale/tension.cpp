@@ -1,0 +1,181 @@
+#include "mesoscale/tension.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include <fmt/format.h>
+#include <tbb/parallel_for.h>
+
+#include "core/problem.h"
+
+namespace heddle::mesoscale {
+
+namespace {
+
+// One tow at a given fabric strain and crimp height: energy, and slopes in the height.
+struct Tow {
+  double energy, slope, curvature;  ///< F, dF/dh, d2F/dh2 of one tow
+  double fabric_force;              ///< N cos th, averaged over changing and floating steps [N]
+};
+
+Tow tow_at(const TensionModel& model, int direction, double strain, double height) {
+  const double share = model.interlacing[static_cast<std::size_t>(direction)];
+  const double pitch = model.pitch * (1.0 + strain);
+  const PathLength path = model.length.evaluate(pitch, height);
+  const double rest = model.rest_length(direction);
+  const double length = share * path.length + (1.0 - share) * pitch;
+  const TowStretch::Value tow = model.stretch.evaluate(length / rest - 1.0);
+  const double dl_dh = share * path.dl_dh;
+  const double off = height - model.rest_height;
+  return {rest * tow.energy + 0.5 * model.crimp_stiffness * off * off,
+          tow.force * dl_dh + model.crimp_stiffness * off,
+          tow.stiffness / rest * dl_dh * dl_dh + tow.force * share * path.d2_hh + model.crimp_stiffness,
+          tow.force * (share * path.dl_dp + 1.0 - share)};
+}
+
+struct Trial {
+  std::array<Tow, 2> tow;
+  double energy;  ///< F [J]
+  std::array<double, 2> slope;
+  double contact_force, contact_stiffness;
+};
+
+Trial trial_at(const TensionModel& model, const std::array<double, 2>& strain,
+               const std::array<double, 2>& height) {
+  Trial trial{
+      {tow_at(model, 0, strain[0], height[0]), tow_at(model, 1, strain[1], height[1])}, 0.0, {}, 0.0, 0.0};
+  const double approach = 2.0 * model.rest_height - height[0] - height[1];
+  double contact_energy = 0.0;
+  if (approach > 0.0) {
+    const Curve::Value force = model.crossover_force.evaluate(approach);
+    trial.contact_force = force.y;
+    trial.contact_stiffness = force.slope;
+    contact_energy = model.crossover_force.integral(approach);
+  }
+  trial.energy = trial.tow[0].energy + trial.tow[1].energy + contact_energy;
+  trial.slope = {trial.tow[0].slope - trial.contact_force, trial.tow[1].slope - trial.contact_force};
+  return trial;
+}
+
+std::array<double, 2> newton_step(const Trial& trial) {
+  const double a = trial.tow[0].curvature + trial.contact_stiffness;
+  const double b = trial.contact_stiffness;
+  const double c = trial.tow[1].curvature + trial.contact_stiffness;
+  const double det = a * c - b * b;
+  return {-(c * trial.slope[0] - b * trial.slope[1]) / det, -(a * trial.slope[1] - b * trial.slope[0]) / det};
+}
+
+TensionModel::State state_of(const TensionModel& model, const std::array<double, 2>& strain,
+                             const std::array<double, 2>& height, const Trial& trial, int iterations) {
+  TensionModel::State state;
+  state.energy = trial.energy / (model.pitch * model.pitch);
+  for (std::size_t i = 0; i < 2; ++i) {
+    const TowStretch::Value squash = model.compression.evaluate(-strain[i]);
+    state.energy += squash.energy;
+    state.tension[i] = trial.tow[i].fabric_force / model.pitch - squash.force;
+  }
+  state.height = height;
+  state.crossover_force = trial.contact_force;
+  state.iterations = iterations;
+  return state;
+}
+
+}  // namespace
+
+TowStretch::Value TowStretch::evaluate(double strain) const {
+  if (strain <= 0.0) return {0.0, 0.0, 0.0};
+  const double range = straightening, s = strain / range;
+  if (s < 1.0) {
+    const double s2 = s * s;
+    return {stiffness * range * range * s2 * s2 * (0.25 - 0.1 * s),
+            stiffness * range * s2 * s * (1.0 - 0.5 * s), stiffness * s2 * (3.0 - 2.0 * s)};
+  }
+  const double taut = strain - 0.5 * range;
+  return {stiffness * (0.5 * taut * taut + 0.025 * range * range), stiffness * taut, stiffness};
+}
+
+double TensionModel::rest_length(int direction) const {
+  const double share = interlacing[static_cast<std::size_t>(direction)];
+  return share * length.evaluate(pitch, rest_height).length + (1.0 - share) * pitch;
+}
+
+TensionModel::State TensionModel::relax(const std::array<double, 2>& strain) const {
+  return relax(strain, {rest_height, rest_height});
+}
+
+TensionModel::State TensionModel::relax(const std::array<double, 2>& strain,
+                                        std::array<double, 2> height) const {
+  Trial now = trial_at(*this, strain, height);
+  constexpr int most = 200;  // convex, so Newton with a line search ends; the table needs 6 on average
+  for (int iteration = 0; iteration < most; ++iteration) {
+    const std::array<double, 2> step = newton_step(now);
+    const double descent = now.slope[0] * step[0] + now.slope[1] * step[1];
+    // The energy errs by the square of this step; rounding in EA eps moves h by 1e-11 of the thickness.
+    if (std::max(std::abs(step[0]), std::abs(step[1])) < 1e-9 * rest_height)
+      return state_of(*this, strain, height, now, iteration);
+    double size = 1.0;
+    for (;; size *= 0.5) {
+      const std::array<double, 2> next{height[0] + size * step[0], height[1] + size * step[1]};
+      const Trial tried = trial_at(*this, strain, next);
+      // A length is known to 1e-16 of itself, its energy to 1e-16 / strain.
+      const double rounding = 1e-12 * (std::abs(now.energy) + std::abs(tried.energy));
+      if (tried.energy <= now.energy + 1e-4 * size * descent + rounding || size < 1e-12) {
+        height = next;
+        now = tried;
+        break;
+      }
+    }
+    if (!std::isfinite(now.energy)) break;
+  }
+  throw NumericalError(
+      fmt::format("tension: crimp heights not found at strains ({:.6g}, {:.6g})", strain[0], strain[1]));
+}
+
+TensionModel tension_model(const FabricGeometry& fabric, const CompactionLaw& law,
+                           const TensionOptions& options) {
+  const CrossingGeometry& crossing = fabric.crossing;
+  const double pitch = crossing.pitch;
+  const double axial = options.fibre_modulus * fabric.mass.glass_area;
+  TensionModel model;
+  model.pitch = pitch;
+  model.rest_height = crossing.section.thickness;
+  model.interlacing = fabric.interlacing;
+  // The edge stays 5 % short of p/2, where the straight leg of a gapless weave would vanish.
+  model.length = {options.form, crossing.section.radius() + 0.5 * crossing.section.thickness,
+                  std::min(0.5 * crossing.section.width, 0.475 * pitch)};
+  model.stretch.stiffness = axial;
+  model.compression.stiffness = options.compression_ratio * axial / pitch;
+  // A cosine of amplitude h/2 and half wave p, bending stiffness B p: energy B p (pi/p)^4 (h/2)^2 p / 4.
+  model.crimp_stiffness = options.bending_stiffness * std::pow(std::numbers::pi, 4) / (8.0 * pitch * pitch);
+
+  const CrossoverContact contact(crossing, 0.0, law);
+  const double deepest = contact.approach_at(0.85);  // beyond, the curve goes on straight, at some 1e8 N/m
+  constexpr int points = 600;
+  std::vector<double> approach(points), force(points);
+  for (int k = 0; k < points; ++k) {
+    approach[k] = deepest * k / (points - 1);
+    force[k] = contact.force(approach[k]);
+  }
+  model.crossover_force = Curve(std::move(approach), std::move(force));
+  return model;
+}
+
+Surface tabulate(const TensionModel& model, const StrainGrid& grid) {
+  const double step = (grid.high - grid.low) / (grid.points - 1);
+  const auto n = static_cast<std::size_t>(grid.points);
+  std::vector<double> energy(n * n);
+  tbb::parallel_for(std::size_t{0}, n, [&](std::size_t i) {
+    // Each row starts afresh, so the bytes do not depend on which thread took it.
+    std::array<double, 2> height{model.rest_height, model.rest_height};
+    for (std::size_t j = 0; j < n; ++j) {
+      const TensionModel::State state = model.relax(
+          {grid.low + step * static_cast<double>(i), grid.low + step * static_cast<double>(j)}, height);
+      energy[i * n + j] = state.energy;
+      height = state.height;
+    }
+  });
+  return Surface(grid.low, step, grid.points, grid.low, step, grid.points, std::move(energy));
+}
+
+}  // namespace heddle::mesoscale

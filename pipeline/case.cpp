@@ -1,0 +1,394 @@
+#include "pipeline/case.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <fstream>
+#include <iterator>
+#include <sstream>
+
+#include "core/units.h"
+#include "pipeline/outputs.h"
+
+namespace heddle::pipeline {
+namespace {
+
+// ---- from settings to the rooms' specifications. A key that could not be read leaves the default of its
+// struct:
+// ---- the case is not used then, only looked through for more problems.
+
+void take(const Settings& settings, const std::string& path, double& value) {
+  if (settings.has(path)) value = settings.number(path);
+}
+void take(const Settings& settings, const std::string& path, int& value) {
+  if (settings.has(path)) value = settings.integer(path);
+}
+void take(const Settings& settings, const std::string& path, std::array<double, 2>& value) {
+  if (settings.has(path)) value = settings.pair(path);
+}
+void take(const Settings& settings, const std::string& path, std::string& value) {
+  if (settings.has(path)) value = settings.text(path);
+}
+
+mesoscale::WeaveSpec weave_of(const Settings& settings) {
+  mesoscale::WeaveSpec weave;
+  take(settings, "weave.pattern", weave.pattern);
+  take(settings, "weave.tow_width", weave.tow_width);
+  take(settings, "weave.gap", weave.gap);
+  take(settings, "weave.tow_thickness", weave.tow_thickness);
+  take(settings, "weave.fabric_thickness", weave.fabric_thickness);
+  take(settings, "weave.linear_density", weave.linear_density);
+  take(settings, "weave.fibre_mass_fraction", weave.fibre_mass_fraction);
+  take(settings, "weave.fibre_density", weave.fibre_density);
+  take(settings, "weave.resin_density", weave.resin_density);
+  take(settings, "weave.fibre_modulus", weave.fibre_modulus);
+  take(settings, "weave.fibre_diameter", weave.fibre_diameter);
+  return weave;
+}
+
+mesoscale::ResinSpec resin_of(const Settings& settings) {
+  mesoscale::ResinSpec resin;
+  take(settings, "resin.consistency", resin.consistency);
+  take(settings, "resin.power_index", resin.power_index);
+  take(settings, "resin.film_thickness", resin.film_thickness);
+  take(settings, "resin.activation_energy", resin.activation_energy);
+  take(settings, "resin.reference_temperature", resin.reference_temperature);
+  return resin;
+}
+
+mesoscale::FormingSpec forming_of(const Settings& settings) {
+  mesoscale::FormingSpec forming;
+  take(settings, "forming.compaction_modulus", forming.compaction_modulus);
+  take(settings, "forming.compaction_exponent", forming.compaction_exponent);
+  take(settings, "forming.tow_friction", forming.tow_friction);
+  take(settings, "forming.reference_tension", forming.reference_tension);
+  take(settings, "forming.in_tow_shear_share", forming.in_tow_shear_share);
+  take(settings, "forming.bonding", forming.bonding);
+  take(settings, "forming.compression_ratio", forming.compression_ratio);
+  return forming;
+}
+
+mesoscale::CellSpec cell_of(const Settings& settings) {
+  mesoscale::CellSpec cell;
+  cell.weave = weave_of(settings);
+  cell.state = settings.is("cell.state", "consolidated") ? mesoscale::CellState::consolidated
+                                                         : mesoscale::CellState::as_woven;
+  cell.resin = resin_of(settings);
+  cell.forming = forming_of(settings);
+  return cell;
+}
+
+/// The melt between fabric and tool is the melt between the tows.
+friction::PowerLawFilm film_of(const Settings& settings) {
+  const mesoscale::ResinSpec resin = resin_of(settings);
+  friction::PowerLawFilm film;
+  film.consistency = resin.consistency;
+  film.index = resin.power_index;
+  film.thickness = resin.film_thickness;
+  film.activation_energy = resin.activation_energy;
+  film.reference_temperature = resin.reference_temperature;
+  take(settings, "resin.rate_floor", film.rate_floor);
+  return film;
+}
+
+friction::Law law_of(const Settings& settings) {
+  if (settings.is("friction.law", "coulomb")) {
+    friction::Coulomb law;
+    take(settings, "friction.coefficient", law.coefficient);
+    return law;
+  }
+  if (settings.is("friction.form", "linear")) {
+    friction::HerseyLinear law;
+    take(settings, "friction.offset", law.offset);
+    take(settings, "friction.slope", law.slope);
+    take(settings, "friction.reference_hersey", law.reference);
+    return law;
+  }
+  friction::HerseyPower law;
+  take(settings, "friction.scale", law.scale);
+  take(settings, "friction.exponent", law.exponent);
+  return law;
+}
+
+const std::string shift_path = "effects.tool_temperature_shift";
+
+bool slope_is_fitted(const Settings& settings) {
+  return settings.is(shift_path + ".slope", "fitted");
+}
+
+friction::Effects effects_of(const Settings& settings) {
+  friction::Effects effects;
+  if (settings.blocks.count(shift_path) == 0) return effects;
+  friction::ToolTemperatureShift shift;
+  if (!slope_is_fitted(settings)) take(settings, shift_path + ".slope", shift.slope);
+  take(settings, shift_path + ".reference", shift.reference);
+  shift.form = settings.is(shift_path + ".form", "factor") ? friction::ToolTemperatureShift::Form::factor
+                                                           : friction::ToolTemperatureShift::Form::term;
+  effects.tool_temperature_shift = shift;
+  return effects;
+}
+
+macroscale::ContactPressure contact_pressure_of(const Settings& settings) {
+  return settings.is("friction.contact_pressure", "nominal") ? macroscale::ContactPressure::nominal
+                                                             : macroscale::ContactPressure::real;
+}
+
+FrictionSpec friction_of(const Settings& settings, const std::filesystem::path& folder) {
+  FrictionSpec friction;
+  friction.model.law = law_of(settings);
+  friction.model.film = film_of(settings);
+  friction.model.effects = effects_of(settings);
+  friction.contact_pressure = contact_pressure_of(settings);
+  const std::string area = "friction.calibration.plate_area";
+  friction.has_plate_area = settings.has(area);
+  take(settings, area, friction.rig.plate_area);
+  friction.rig.plate_area_band = {friction.rig.plate_area, friction.rig.plate_area};
+  take(settings, area + "_band", friction.rig.plate_area_band);
+  const bool stribeck = settings.is("friction.law", "stribeck");
+  if (stribeck && settings.has("friction.calibration.data")) {
+    friction.calibration_data = folder / settings.text("friction.calibration.data");
+    friction.fit_temperature_slope = slope_is_fitted(settings);
+  }
+  return friction;
+}
+
+FrictionTestSpec friction_test_of(const Settings& settings, const std::filesystem::path& folder) {
+  FrictionTestSpec test;
+  if (settings.has("friction_test.data")) test.data = folder / settings.text("friction_test.data");
+  if (settings.has("friction_test.design")) test.design = folder / settings.text("friction_test.design");
+  return test;
+}
+
+macroscale::ProcessSpec process_of(const Settings& settings) {
+  macroscale::ProcessSpec process;
+  take(settings, "process.punch.stroke", process.stroke);
+  take(settings, "process.punch.time", process.time);
+  take(settings, "process.punch.slow_down", process.slow_down);
+  take(settings, "process.punch.speed_scale", process.speed_scale);
+  take(settings, "process.steps", process.steps);
+  take(settings, "process.binder_force", process.binder_force);
+  take(settings, "process.tool_temperature", process.tool_temperature);
+  take(settings, "process.blank_temperature", process.blank_temperature);
+  return process;
+}
+
+macroscale::StampingSpec stamping_of(const Settings& settings) {
+  macroscale::StampingSpec stamping;
+  take(settings, "blank.size", stamping.blank.size);
+  take(settings, "blank.orientation", stamping.blank.orientation);
+  take(settings, "blank.spacing", stamping.blank.spacing);
+  take(settings, "blank.plies", stamping.blank.plies);
+  take(settings, "tools.punch.radius", stamping.punch.radius);
+  take(settings, "tools.die.opening_radius", stamping.die.opening_radius);
+  take(settings, "tools.die.fillet", stamping.die.fillet);
+  take(settings, "tools.binder.inner_radius", stamping.binder.inner_radius);
+  take(settings, "tools.binder.edge_fillet", stamping.binder.edge_fillet);
+  take(settings, "tools.binder.mass", stamping.binder.mass);
+  stamping.process = process_of(settings);
+  take(settings, "artefact.mass_scaling", stamping.artefact.mass_scaling);
+  take(settings, "artefact.stabilisation", stamping.artefact.stabilisation);
+  stamping.shear_rate = !settings.is("fabric.shear_rate", "off");
+  stamping.contact_pressure = contact_pressure_of(settings);
+  return stamping;
+}
+
+Case case_of(const ReadConfig& config, const std::filesystem::path& folder) {
+  const Settings& settings = config.settings;
+  const auto runs = [&](Stage stage) { return settings.stages.count(stage) > 0; };
+  Case result;
+  take(settings, "name", result.name);
+  if (runs(Stage::cell)) result.cell = cell_of(settings);
+  if (runs(Stage::friction)) result.friction = friction_of(settings, folder);
+  if (runs(Stage::friction_test)) result.friction_test = friction_test_of(settings, folder);
+  if (runs(Stage::stamping)) result.stamping = stamping_of(settings);
+  result.notes = config.notes;
+  result.settings = settings;
+  return result;
+}
+
+// ---- rules between keys
+
+/// Whether a key of one of these blocks has a problem already. A rule between keys is tried only where its
+/// keys were read: with a default in the place of a bad value it would blame the wrong key.
+bool any_problem_below(const Problems& problems, const std::vector<std::string>& blocks) {
+  return std::any_of(problems.begin(), problems.end(), [&](const Problem& problem) {
+    return std::any_of(blocks.begin(), blocks.end(), [&](const std::string& block) {
+      return problem.key == block || problem.key.starts_with(block + ".");
+    });
+  });
+}
+
+void append(Problems& problems, Problems more) {
+  problems.insert(problems.end(), std::make_move_iterator(more.begin()), std::make_move_iterator(more.end()));
+}
+
+/// A model whose constants are still to be fitted has only its film and effects to check.
+Problems check_friction_model(const FrictionSpec& spec) {
+  friction::Model model = spec.model;
+  if (spec.calibrated()) model.law = friction::HerseyPower{.scale = 1.0, .exponent = 0.1};
+  return friction::check(model);
+}
+
+/// Constants given beside a table that would fit them: which of the two counts would be a guess.
+Problems check_constants_beside_data(const Settings& settings) {
+  Problems problems;
+  if (!settings.has("friction.calibration.data") || !settings.is("friction.law", "stribeck")) return problems;
+  const bool power = settings.is("friction.form", "power");
+  const std::vector<std::string> constants =
+      power ? std::vector<std::string>{"friction.scale", "friction.exponent"}
+            : std::vector<std::string>{"friction.offset", "friction.slope", "friction.reference_hersey"};
+  for (const std::string& path : constants) {
+    if (!settings.has(path)) continue;
+    problems.push_back({path + ".beside_data", path, "",
+                        "is given beside friction.calibration.data, which fits it",
+                        "Leave one of the two out."});
+  }
+  return problems;
+}
+
+Problems check_fitted_slope(const Settings& settings) {
+  if (!slope_is_fitted(settings)) return {};
+  if (settings.has("friction.calibration.data") && settings.is("friction.law", "stribeck")) return {};
+  return {{shift_path + ".slope.fitted", shift_path + ".slope", "",
+           "is to be fitted, and no friction.calibration.data of a Stribeck law is there to fit it to",
+           "Give the table, or a number: Table 4 of the paper gives -9.27e-4 1/K."}};
+}
+
+Problems check_rig(const FrictionSpec& spec, const Settings& settings) {
+  if (!spec.has_plate_area) return {};
+  Problems problems = friction::check(spec.rig);
+  // A band that was not given is the area itself; a fault of the area alone would be said twice.
+  if (!settings.has("friction.calibration.plate_area_band")) {
+    std::erase_if(problems, [](const Problem& problem) { return problem.key.ends_with("_band"); });
+  }
+  return problems;
+}
+
+/// Problems inside a friction table, with the table's own name and lines.
+Problems check_table(const std::filesystem::path& file, bool measured_force_needed) {
+  if (file.empty()) return {};
+  try {
+    const auto rows = friction::read_friction_table(file.lexically_normal().string());
+    Problems problems = friction::check(rows, measured_force_needed);
+    for (Problem& problem : problems) problem.file = file.lexically_normal().string();
+    return problems;
+  } catch (const InputError& error) {
+    return error.problems();
+  }
+}
+
+/// The fabric passes between punch and die.
+Problems check_clearance(const mesoscale::CellSpec& cell, const macroscale::StampingSpec& stamping) {
+  constexpr double rounding = 1e-9;  // [m]: lets 71.5 mm - 70 mm hold a fabric of 1.5 mm
+  const double clearance = stamping.die.opening_radius - stamping.punch.radius;
+  const double thickness = cell.weave.fabric_thickness;
+  if (clearance <= 0.0 || clearance >= thickness - rounding) return {};  // <= 0: said by the room itself
+  return {{"tools.die.opening_radius.fabric", "tools.die.opening_radius", "",
+           fmt::format("leaves {:.4g} mm beside the punch, less than the fabric's {:.4g} mm", 1e3 * clearance,
+                       1e3 * thickness),
+           fmt::format("Open the die to at least {:.6g} mm.", 1e3 * (stamping.punch.radius + thickness))}};
+}
+
+Problems check_between_keys(const Case& a_case, const Problems& known) {
+  const std::vector<std::string> cell_blocks{"weave", "cell", "fabric", "resin", "forming"};
+  const std::vector<std::string> friction_blocks{"friction", "effects", "resin"};
+  const std::vector<std::string> stamping_blocks{"blank", "tools", "process", "artefact"};
+  const bool cell_read = !any_problem_below(known, cell_blocks);
+  const bool stamping_read = !any_problem_below(known, stamping_blocks);
+  Problems problems;
+  if (a_case.cell && cell_read) append(problems, mesoscale::check(*a_case.cell));
+  if (a_case.friction && !any_problem_below(known, friction_blocks)) {
+    append(problems, check_constants_beside_data(a_case.settings));
+    append(problems, check_fitted_slope(a_case.settings));
+    append(problems, check_rig(*a_case.friction, a_case.settings));
+    append(problems, check_friction_model(*a_case.friction));
+    append(problems, check_table(a_case.friction->calibration_data, true));
+  }
+  if (a_case.friction_test && a_case.friction_test->data != a_case.friction->calibration_data) {
+    append(problems, check_table(a_case.friction_test->data, false));
+  }
+  if (a_case.stamping && stamping_read) append(problems, macroscale::check(*a_case.stamping));
+  if (a_case.cell && a_case.stamping && cell_read && stamping_read) {
+    append(problems, check_clearance(*a_case.cell, *a_case.stamping));
+  }
+  return problems;
+}
+
+/// Values no source of ours measures, said wherever the case is shown.
+void note_assumptions(Case& a_case) {
+  const Setting* area = a_case.settings.find("friction.calibration.plate_area");
+  if (a_case.friction && a_case.friction->calibrated() && area != nullptr) {
+    a_case.notes.push_back(fmt::format(
+        "friction.calibration.plate_area = {} is assumed: the paper does not give it", area->written));
+  }
+  const bool artefact = a_case.stamping && (a_case.stamping->artefact.mass_scaling != 1.0 ||
+                                            a_case.stamping->artefact.stabilisation != 0.0);
+  if (artefact) a_case.notes.push_back("artefact: a non-physical help is switched on");
+}
+
+std::string friction_line(const FrictionSpec& friction) {
+  const std::string pressure = friction.contact_pressure == macroscale::ContactPressure::real
+                                   ? "real contact pressure"
+                                   : "nominal pressure";
+  if (std::holds_alternative<friction::Coulomb>(friction.model.law)) {
+    return fmt::format("friction: Coulomb, mu = {}",
+                       std::get<friction::Coulomb>(friction.model.law).coefficient);
+  }
+  const bool linear = std::holds_alternative<friction::HerseyLinear>(friction.model.law);
+  return fmt::format("friction: Stribeck law, {} form, {}, {}", linear ? "linear" : "power", pressure,
+                     friction.calibrated() ? "fitted to friction.calibration.data" : "constants as given");
+}
+
+}  // namespace
+
+Case read_case_text(const std::string& text, const std::string& file, const std::filesystem::path& folder,
+                    const std::vector<std::string>& assignments) {
+  ReadConfig config = read_config(text, file, folder, assignments);
+  Case result = case_of(config, folder);
+  Problems between = check_between_keys(result, config.problems);
+  locate(between, config);
+  append(config.problems, std::move(between));
+  sort_by_place(config.problems, file);
+  if (!config.problems.empty()) throw InputError(config.problems);
+  note_assumptions(result);
+  return result;
+}
+
+Case read_case(const std::filesystem::path& file, const std::vector<std::string>& assignments) {
+  std::ifstream stream(file, std::ios::binary);
+  std::ostringstream text;
+  if (stream) text << stream.rdbuf();
+  std::error_code ignored;  // what cannot be looked at is no regular file either
+  if (!stream || !std::filesystem::is_regular_file(file, ignored)) {
+    throw InputError({{"file.unreadable", "", "", "cannot be read",
+                       "Check the path; it is taken from the current folder.", file.string(), 0}});
+  }
+  return read_case_text(text.str(), file.string(), file.parent_path(), assignments);
+}
+
+std::vector<std::string> stage_lines(const Case& a_case) {
+  std::vector<std::string> lines;
+  if (a_case.cell) {
+    lines.push_back(fmt::format("mesoscale: {} weave, {}", a_case.cell->weave.pattern,
+                                a_case.settings.text("cell.state")));
+  }
+  if (a_case.friction) lines.push_back(friction_line(*a_case.friction));
+  if (a_case.friction_test) lines.push_back("friction test: comparison with friction_test.data");
+  if (a_case.stamping) {
+    const macroscale::ProcessSpec& process = a_case.stamping->process;
+    lines.push_back(fmt::format("macroscale: stroke {} in {}, {} steps", write_quantity(process.stroke, "mm"),
+                                write_quantity(process.time / process.speed_scale, "s"), process.steps));
+  }
+  return lines;
+}
+
+void write_resolved(const Case& a_case, const std::filesystem::path& folder) {
+  write_file(folder / "resolved.yaml", resolved_yaml(a_case.settings));
+  for (const Key& key : schema()) {
+    const Setting* setting = a_case.settings.find(key.path);
+    if (key.type != KeyType::file || setting == nullptr) continue;
+    write_file(folder / resolved_file_name(*setting), read_file(setting->folder / setting->text));
+  }
+}
+
+}  // namespace heddle::pipeline

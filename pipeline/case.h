@@ -1,0 +1,58 @@
+#pragma once
+
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "friction/friction_test.h"
+#include "friction/model.h"
+#include "macroscale/stamping.h"
+#include "mesoscale/cell_spec.h"
+#include "pipeline/config_reader.h"
+
+namespace heddle::pipeline {
+
+/// What the user says of friction. Where a table calibrates the law, its constants are still to be fitted.
+struct FrictionSpec {
+  /// The form of the law, its constants where they were given, the film and the effects.
+  friction::Model model;
+  macroscale::ContactPressure contact_pressure = macroscale::ContactPressure::real;
+  friction::FrictionRig rig;    ///< plate area and its band; the band is {area, area} where none was given
+  bool has_plate_area = false;  ///< Coulomb friction needs none
+  std::filesystem::path calibration_data;  ///< empty: the constants of the law were given
+  bool fit_temperature_slope = false;      ///< `slope: fitted`; else the slope in the model is held
+  bool calibrated() const { return !calibration_data.empty(); }
+};
+
+struct FrictionTestSpec {
+  std::filesystem::path data;    ///< measured friction forces
+  std::filesystem::path design;  ///< ranges of the parameters; may be empty
+};
+
+/// One configuration, typed and checked. Stages that the file does not ask for are absent.
+struct Case {
+  std::string name;
+  std::optional<mesoscale::CellSpec> cell;
+  std::optional<FrictionSpec> friction;
+  std::optional<FrictionTestSpec> friction_test;
+  std::optional<macroscale::StampingSpec> stamping;
+  std::vector<std::string> notes;  ///< keys not used, and values that are assumed
+  Settings settings;               ///< every key behind the above
+};
+
+/// Reads a configuration file with --set applied, checks every key and the keys against each other.
+/// @throws InputError  with every problem of the file
+Case read_case(const std::filesystem::path& file, const std::vector<std::string>& assignments = {});
+
+/// The same for text. @param folder  against which file keys are resolved
+Case read_case_text(const std::string& text, const std::string& file, const std::filesystem::path& folder,
+                    const std::vector<std::string>& assignments = {});
+
+/// What `heddle run` would do, one line a stage.
+std::vector<std::string> stage_lines(const Case& a_case);
+
+/// Writes FOLDER/resolved.yaml and copies of the files it names to FOLDER/inputs: the folder runs on its own.
+void write_resolved(const Case& a_case, const std::filesystem::path& folder);
+
+}  // namespace heddle::pipeline

@@ -1,0 +1,88 @@
+#include "pipeline/command_line.h"
+
+#include <CLI/CLI.hpp>
+#include <algorithm>
+#include <iostream>
+
+#ifndef HEDDLE_VERSION
+#error "HEDDLE_VERSION comes from the build (project version)"
+#endif
+
+namespace heddle::pipeline {
+namespace {
+
+void add_file(CLI::App& command, std::filesystem::path& file) {
+  command.add_option("file", file, "Configuration file (YAML)")->required();
+}
+
+/// One assignment a --set: an assignment may hold blanks, commas and brackets, which stay as they are.
+void add_assignments(CLI::App& command, std::vector<std::string>& assignments) {
+  command
+      .add_option("--set", assignments,
+                  "Change one key for this run: PATH=VALUE, as in --set weave.gap='1.5 mm'. May be repeated")
+      ->expected(1)
+      ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll)
+      ->type_name("PATH=VALUE");
+}
+
+CLI::App* add_run(CLI::App& program, const char* name, const char* help, RunOptions& options) {
+  CLI::App* command = program.add_subcommand(name, help);
+  add_file(*command, options.file);
+  command->add_option("-o,--output", options.output, "Folder of the results (default: out/NAME)");
+  command->add_option("-j,--threads", options.threads, "Number of threads (default: all)")
+      ->check(CLI::Range(1, 4096));
+  add_assignments(*command, options.assignments);
+  command->add_flag("--force", options.force, "Write into a folder that holds another case");
+  command->add_flag("--quiet", options.quiet, "No progress on standard error");
+  return command;
+}
+
+CLI::App* add_check(CLI::App& program, CheckOptions& options) {
+  CLI::App* command = program.add_subcommand("check", "Find every problem of a file, or say what would run");
+  CLI::Option* reference =
+      command->add_flag("--reference", options.reference, "Print the page of all configuration keys");
+  CLI::Option* file = command->add_option("file", options.file, "Configuration file (YAML)");
+  file->excludes(reference);
+  add_assignments(*command, options.assignments);
+  command->callback([&options] {
+    if (options.file.empty() && !options.reference) throw CLI::RequiredError("file");
+  });
+  return command;
+}
+
+}  // namespace
+
+int dispatch(const std::vector<std::string>& arguments, const Commands& commands) {
+  CLI::App program("From the tows of a woven composite to a stamped part.", "heddle");
+  program.set_version_flag("--version", std::string("heddle ") + HEDDLE_VERSION);
+  program.require_subcommand(1);
+  program.footer("`heddle test [ctest arguments]` builds and runs the tests.");
+
+  RunOptions run_options;
+  RunOptions weave_options;
+  RunOptions friction_options;
+  CheckOptions check_options;
+  const CLI::App* run =
+      add_run(program, "run", "The whole chain: weave, friction, stamped part", run_options);
+  program.get_subcommand("run")->add_flag("--resume", run_options.resume, "Go on from the last checkpoint");
+  const CLI::App* check = add_check(program, check_options);
+  const CLI::App* weave = add_run(program, "weave", "Unit cell only", weave_options);
+  add_run(program, "friction", "Friction test only", friction_options);
+
+  try {
+    // CLI11 takes a vector from its end.
+    std::vector<std::string> reversed(arguments.rbegin(), arguments.rend());
+    program.parse(std::move(reversed));
+  } catch (const CLI::Success& success) {
+    return program.exit(success, std::cout, std::cerr);
+  } catch (const CLI::ParseError& error) {
+    program.exit(error, std::cout, std::cerr);
+    return exit_bad_input;
+  }
+  if (run->parsed()) return commands.run(run_options);
+  if (check->parsed()) return commands.check(check_options);
+  if (weave->parsed()) return commands.weave(weave_options);
+  return commands.friction(friction_options);
+}
+
+}  // namespace heddle::pipeline

@@ -1,0 +1,37 @@
+#pragma once
+
+#include <filesystem>
+#include <string>
+#include <vector>
+
+namespace heddle::pipeline {
+
+/// Exit codes of the program.
+constexpr int exit_done = 0;
+constexpr int exit_failed = 1;
+constexpr int exit_bad_input = 2;
+
+/// What the command line says of a case to run.
+struct RunOptions {
+  std::filesystem::path file;
+  std::filesystem::path output = {};          ///< empty: out/NAME
+  int threads = 0;                            ///< 0: as many as the machine has
+  std::vector<std::string> assignments = {};  ///< of --set, in order
+  bool resume = false;                        ///< go on from the last checkpoint
+  bool force = false;                         ///< write into a folder that holds another case
+  bool quiet = false;                         ///< no progress
+};
+
+struct CheckOptions {
+  std::filesystem::path file;
+  std::vector<std::string> assignments = {};
+  bool reference = false;  ///< print the page of all keys instead
+};
+
+/// Each returns an exit code, and throws InputError for bad input.
+int run_case(const RunOptions& options);       ///< the whole chain
+int weave_case(const RunOptions& options);     ///< unit cell only
+int friction_case(const RunOptions& options);  ///< friction test only
+int check_file(const CheckOptions& options);   ///< every problem, or the stages and notes
+
+}  // namespace heddle::pipeline

@@ -1,0 +1,94 @@
+#include "pipeline/config_reference.h"
+
+#include <fmt/format.h>
+
+#include "core/units.h"
+#include "pipeline/config_schema.h"
+
+namespace heddle::pipeline {
+namespace {
+
+constexpr const char* introduction =
+    "# Configuration keys\n"
+    "\n"
+    "Written by `heddle check --reference` from the table that validates every file. Values carry their "
+    "unit\n"
+    "(`gap: 0.75 mm`); any unit of the same kind is taken, and 0.75 mm is exactly 0.75e-3 m. Temperatures "
+    "are in\n"
+    "degC or K, differences of temperature in K, fractions plain or in %.\n"
+    "`--set PATH=VALUE` changes a key for one run. A stage runs when one of its blocks is there: `weave`, "
+    "`friction`,\n"
+    "`friction_test`, or `blank`, `tools` and `process` together.\n";
+
+std::string top_block(const std::string& path) {
+  return path.substr(0, path.find('.'));
+}
+
+std::string value_column(const Key& key) {
+  switch (key.type) {
+    case KeyType::word:
+      return "word";
+    case KeyType::text:
+      return "text";
+    case KeyType::integer:
+      return "whole number";
+    case KeyType::file:
+      return "file";
+    case KeyType::pair:
+      return fmt::format("[{0}, {0}]", key.unit);
+    case KeyType::quantity:
+    case KeyType::choice:
+      break;
+  }
+  std::string text = key.type == KeyType::choice ? "" : key.unit.empty() ? "number" : key.unit;
+  for (const std::string& choice : key.choices)
+    text += (text.empty() ? "" : " or ") + fmt::format("`{}`", choice);
+  return text;
+}
+
+std::string default_column(const Key& key) {
+  switch (key.presence) {
+    case Presence::required:
+      return "required";
+    case Presence::defaulted:
+      return fmt::format("`{}`", key.default_text);
+    case Presence::optional:
+    case Presence::later:
+      return "none";
+  }
+  return "";
+}
+
+/// What the key means, and the conditions under which it counts.
+std::string help_column(const Key& key) {
+  return key.used_when.empty() ? key.help : fmt::format("{} Used when `{}`.", key.help, key.used_when);
+}
+
+std::string row(const Key& key) {
+  return fmt::format("| `{}` | {} | {} | {} | {} |\n", key.path, value_column(key), default_column(key),
+                     key.range, help_column(key));
+}
+
+}  // namespace
+
+std::string config_reference() {
+  std::string text = introduction;
+  std::string block;
+  std::string later;
+  for (const Key& key : schema()) {
+    if (key.presence == Presence::later) {
+      later += (later.empty() ? "`" : ", `") + key.path + "`";
+      continue;
+    }
+    const bool alone = key.path.find('.') == std::string::npos;
+    const std::string heading = alone ? "case" : top_block(key.path);
+    if (heading != block) {
+      text += fmt::format("\n## {}\n\n| key | value | default | range | |\n|---|---|---|---|---|\n", heading);
+      block = heading;
+    }
+    text += row(key);
+  }
+  return text + "\n## Known, not read by this version\n\n" + later + "\n";
+}
+
+}  // namespace heddle::pipeline

@@ -1,0 +1,353 @@
+#include "pipeline/config_schema.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <limits>
+#include <stdexcept>
+
+#include "core/units.h"
+
+namespace heddle::pipeline {
+namespace {
+
+constexpr auto required = Presence::required;
+constexpr auto defaulted = Presence::defaulted;
+constexpr auto optional = Presence::optional;
+
+void append(std::vector<Key>& keys, std::vector<Key> more) {
+  keys.insert(keys.end(), std::make_move_iterator(more.begin()), std::make_move_iterator(more.end()));
+}
+
+Key later(std::string path, std::string help) {
+  return {.path = std::move(path), .presence = Presence::later, .help = std::move(help)};
+}
+
+// A table reads better in rows than one field a line.
+// clang-format off
+std::vector<Key> head_keys() {
+  return {
+      {.path = "heddle", .type = KeyType::choice, .presence = required, .choices = {"1"},
+       .help = "Version of this file format; write heddle: 1."},
+      {.path = "name", .type = KeyType::word, .presence = required,
+       .help = "Name of the case; results go to out/NAME."},
+  };
+}
+
+std::vector<Key> weave_keys() {
+  const auto cell = Stage::cell;
+  return {
+      {.path = "weave.pattern", .type = KeyType::text, .presence = required, .stage = cell,
+       .help = "plain, twill m/n or satin N/k."},
+      {.path = "weave.tow_width", .type = KeyType::quantity, .unit = "mm", .presence = required,
+       .range = "(0 mm, 100 mm)", .stage = cell, .help = "Width of a tow (paper, Table 1: 4.64 mm)."},
+      {.path = "weave.gap", .type = KeyType::quantity, .unit = "mm", .presence = required, .range = "[0 mm, 100 mm)",
+       .stage = cell, .help = "Clear distance between neighbouring tows (Table 1: 0.75 mm)."},
+      {.path = "weave.tow_thickness", .type = KeyType::quantity, .unit = "mm", .presence = required,
+       .range = "(0 mm, 20 mm)", .stage = cell, .help = "Thickness of a tow (Table 1: 0.75 mm)."},
+      {.path = "weave.fabric_thickness", .type = KeyType::quantity, .unit = "mm", .presence = required,
+       .range = "(0 mm, 40 mm)", .stage = cell, .help = "Thickness of the fabric (Table 1: 1.5 mm)."},
+      {.path = "weave.linear_density", .type = KeyType::quantity, .unit = "tex", .presence = required,
+       .range = "(0 tex, 100000 tex)", .stage = cell,
+       .help = "Mass per length of one tow, glass and resin (1872 tex)."},
+      {.path = "weave.fibre_mass_fraction", .type = KeyType::quantity, .unit = "%", .presence = required,
+       .range = "(0, 1]", .stage = cell, .help = "Glass over glass and resin, by mass (Table 1: 60 %)."},
+      {.path = "weave.fibre_density", .type = KeyType::quantity, .unit = "kg/m^3", .presence = defaulted,
+       .default_text = "2550 kg/m^3", .range = "(0 kg/m^3, 20000 kg/m^3)", .stage = cell, .help = "Glass."},
+      {.path = "weave.resin_density", .type = KeyType::quantity, .unit = "kg/m^3", .presence = defaulted,
+       .default_text = "905 kg/m^3", .range = "(0 kg/m^3, 20000 kg/m^3)", .stage = cell,
+       .help = "Solid polypropylene."},
+      {.path = "weave.fibre_modulus", .type = KeyType::quantity, .unit = "GPa", .presence = defaulted,
+       .default_text = "72.4 GPa", .range = "(0 GPa, 2000 GPa)", .stage = cell, .help = "Young's modulus of glass."},
+      {.path = "weave.fibre_diameter", .type = KeyType::quantity, .unit = "um", .presence = defaulted,
+       .default_text = "18.5 um", .range = "(0 um, 1000 um)", .stage = cell,
+       .help = "Of one filament; recalled, not measured."},
+      {.path = "cell.state", .type = KeyType::choice, .presence = defaulted, .default_text = "as_woven",
+       .choices = {"as_woven", "consolidated"}, .stage = cell,
+       .help = "as_woven: molten, at fabric thickness, for forming; consolidated: the solid part."},
+      later("cell.voxels", "Cell from a voxel file."),
+      later("cell.boundary", "Boundary of a voxel cell."),
+      later("cell.phases", "Elastic constants of voxel phases."),
+      {.path = "fabric.shear_rate", .type = KeyType::choice, .presence = defaulted, .default_text = "on",
+       .choices = {"on", "off"}, .stage = cell,
+       .help = "Master switch of the rate-dependent shear resistance."},
+  };
+}
+
+std::vector<Key> resin_keys() {
+  return {
+      {.path = "resin.rheology", .type = KeyType::choice, .presence = defaulted, .default_text = "power_law",
+       .choices = {"power_law"},
+       .help = "Viscosity law of the melt (paper, Eq. 4)."},
+      {.path = "resin.consistency", .type = KeyType::quantity, .unit = "Pa s^n", .presence = defaulted,
+       .default_text = "6790 Pa s^n", .range = "(0 Pa s^n, )", .used_when = "resin.rheology=power_law",
+       .help = "m at the reference temperature; prior: polypropylene at 180 degC (Tadmor & Gogos)."},
+      {.path = "resin.power_index", .type = KeyType::quantity, .presence = defaulted, .default_text = "0.38",
+       .range = "(0, 1]", .used_when = "resin.rheology=power_law",
+       .help = "n; polypropylene melts lie at 0.37 to 0.41. Never fitted to friction."},
+      {.path = "resin.film_thickness", .type = KeyType::quantity, .unit = "mm", .presence = defaulted,
+       .default_text = "0.07 mm", .range = "(0 mm, 10 mm)", .help = "h of Eq. 5 (paper, section 2)."},
+      {.path = "resin.activation_energy", .type = KeyType::quantity, .unit = "kJ/mol", .presence = defaulted,
+       .default_text = "42 kJ/mol", .range = "[0 kJ/mol, 1000 kJ/mol]",
+       .help = "Of the Arrhenius shift of m; prior: polypropylene 38 to 46 kJ/mol."},
+      {.path = "resin.reference_temperature", .type = KeyType::quantity, .unit = "degC", .presence = defaulted,
+       .default_text = "180 degC", .range = "(0 K, 1000 K)", .help = "Where the consistency holds."},
+      {.path = "resin.rate_floor", .type = KeyType::quantity, .unit = "1/s", .presence = defaulted,
+       .default_text = "1 1/s", .range = "(0 1/s, )",
+       .help = "Shear rate below which the film is Newtonian, which keeps rest finite; ours."},
+  };
+}
+
+std::vector<Key> forming_keys() {
+  const auto cell = Stage::cell;
+  return {
+      {.path = "forming.compaction_modulus", .type = KeyType::quantity, .unit = "MPa", .presence = defaulted,
+       .default_text = "3.2 MPa", .range = "(0 MPa, )", .stage = cell,
+       .help = "k E of sigma = k E (V^n - V0^n) in compaction; prior."},
+      {.path = "forming.compaction_exponent", .type = KeyType::quantity, .presence = defaulted, .default_text = "5",
+       .range = "[1, 30]", .stage = cell,
+       .help = "n of the compaction law: 3 random, 5 planar, more for bundles; prior."},
+      {.path = "forming.tow_friction", .type = KeyType::quantity, .presence = defaulted, .default_text = "0.2",
+       .range = "[0, 2]", .stage = cell, .help = "Between crossing tows, lubricated; prior."},
+      {.path = "forming.reference_tension", .type = KeyType::quantity, .unit = "N/m", .presence = defaulted,
+       .default_text = "200 N/m", .range = "[0 N/m, )", .stage = cell,
+       .help = "Tow tension per width at which the shear energy is taken; prior."},
+      {.path = "forming.in_tow_shear_share", .type = KeyType::quantity, .unit = "%", .presence = defaulted,
+       .default_text = "0.5", .range = "[0, 1]", .stage = cell,
+       .help = "0: tows turn rigidly, 1: they shear inside; prior."},
+      {.path = "forming.bonding", .type = KeyType::quantity, .unit = "%", .presence = defaulted,
+       .default_text = "0.3", .range = "[0, 1]", .stage = cell,
+       .help = "0: fibres slide freely in bending, 1: bonded; prior."},
+      {.path = "forming.compression_ratio", .type = KeyType::quantity, .unit = "%", .presence = defaulted,
+       .default_text = "0.01", .range = "(0, 1]", .stage = cell,
+       .help = "Tangent in compression over tangent in tension; prior."},
+  };
+}
+
+std::vector<Key> friction_keys() {
+  const auto friction = Stage::friction;
+  const std::string stribeck = "friction.law=stribeck";
+  const std::string direct_power = stribeck + " friction.form=power !friction.calibration.data";
+  const std::string direct_linear = stribeck + " friction.form=linear !friction.calibration.data";
+  return {
+      {.path = "friction.law", .type = KeyType::choice, .presence = required, .choices = {"stribeck", "coulomb"}, .stage = friction,
+       .help = "stribeck: mu follows the Hersey number; coulomb: mu is constant."},
+      {.path = "friction.coefficient", .type = KeyType::quantity, .presence = required, .range = "[0, 10]",
+       .stage = friction, .used_when = "friction.law=coulomb", .help = "mu of the Coulomb law."},
+      {.path = "friction.form", .type = KeyType::choice, .presence = defaulted, .default_text = "power",
+       .choices = {"power", "linear"}, .stage = friction,
+       .used_when = stribeck,
+       .help = "power: mu = C Hs^s; linear: mu = a + b Hs/Hs0, which grows without bound at low pressure."},
+      {.path = "friction.contact_pressure", .type = KeyType::choice, .presence = defaulted, .default_text = "real",
+       .choices = {"real", "nominal"}, .stage = friction,
+       .help = "real: the law sees p / phi with the contact fraction phi of the weave; nominal: p."},
+      {.path = "friction.calibration.data", .type = KeyType::file, .presence = optional, .stage = friction,
+       .used_when = stribeck,
+       .help = "Friction test table; when given, the constants of the law are fitted to it, else they must be given."},
+      {.path = "friction.calibration.plate_area", .type = KeyType::quantity, .unit = "m^2", .presence = required,
+       .range = "(0 m^2, 1 m^2)", .stage = friction, .used_when = stribeck,
+       .help = "Of the friction rig, which turns its force into pressure. Assumed: the paper does not give it."},
+      {.path = "friction.calibration.plate_area_band", .type = KeyType::pair, .unit = "m^2", .presence = optional,
+       .range = "(0 m^2, 1 m^2)", .stage = friction, .used_when = stribeck,
+       .help = "Smallest and largest plate area thought possible; reports carry it."},
+      {.path = "friction.scale", .type = KeyType::quantity, .presence = required, .range = "(0, )", .stage = friction,
+       .used_when = direct_power, .help = "C of the power form."},
+      {.path = "friction.exponent", .type = KeyType::quantity, .presence = required, .range = "[0, 1]",
+       .stage = friction, .used_when = direct_power, .help = "s of the power form."},
+      {.path = "friction.offset", .type = KeyType::quantity, .presence = required, .range = "[0, 10]",
+       .stage = friction, .used_when = direct_linear, .help = "a of the linear form."},
+      {.path = "friction.slope", .type = KeyType::quantity, .presence = required, .range = "[0, 10]",
+       .stage = friction, .used_when = direct_linear, .help = "b of the linear form."},
+      {.path = "friction.reference_hersey", .type = KeyType::quantity, .presence = required, .range = "(0, )",
+       .stage = friction, .used_when = direct_linear, .help = "Hs0 of the linear form."},
+      {.path = "friction_test.data", .type = KeyType::file, .presence = required, .stage = Stage::friction_test,
+       .help = "Measured friction forces to compare with."},
+      {.path = "friction_test.design", .type = KeyType::file, .presence = optional, .stage = Stage::friction_test,
+       .help = "Range of the test parameters (paper, Table 2), over which mu and force are swept."},
+  };
+}
+
+std::vector<Key> process_keys() {
+  const auto stamping = Stage::stamping;
+  return {
+      {.path = "process.punch.stroke", .type = KeyType::quantity, .unit = "mm", .presence = required,
+       .range = "(0 mm, 10000 mm)", .stage = stamping, .help = "Travel of the punch from first touch."},
+      {.path = "process.punch.time", .type = KeyType::quantity, .unit = "s", .presence = required, .range = "(0 s, )",
+       .stage = stamping, .help = "Of the stroke at speed_scale 1."},
+      {.path = "process.punch.speed_scale", .type = KeyType::quantity, .presence = defaulted, .default_text = "1",
+       .range = "(0, )", .stage = stamping, .help = "0.5: half the speed."},
+      {.path = "process.punch.slow_down", .type = KeyType::quantity, .unit = "s", .presence = defaulted,
+       .default_text = "0.01 s", .range = "[0 s, )", .stage = stamping,
+       .help = "The punch stops linearly over this last part (paper, section 3.2.2)."},
+      later("process.punch.file", "Punch displacement over time from a table."),
+      {.path = "process.steps", .type = KeyType::integer, .presence = defaulted, .default_text = "100",
+       .range = "[1, 1000000]", .stage = stamping, .help = "Equal in stroke; one that fails is halved."},
+      {.path = "process.binder_force", .type = KeyType::quantity, .unit = "N", .presence = required,
+       .range = "(0 N, )", .stage = stamping, .help = "Total force on the binder (paper: 650 to 3000 N)."},
+      {.path = "process.tool_temperature", .type = KeyType::quantity, .unit = "degC", .presence = required,
+       .range = "[-100 degC, 500 degC]", .stage = stamping, .help = "Of punch, die and binder."},
+      {.path = "process.blank_temperature", .type = KeyType::quantity, .unit = "degC", .presence = required,
+       .range = "[-100 degC, 500 degC]", .stage = stamping, .help = "Of the fabric."},
+  };
+}
+
+std::vector<Key> blank_and_tool_keys() {
+  const auto stamping = Stage::stamping;
+  return {
+      {.path = "blank.size", .type = KeyType::pair, .unit = "mm", .presence = required, .range = "(0 mm, 100000 mm)",
+       .stage = stamping, .help = "Along x and y."},
+      {.path = "blank.orientation", .type = KeyType::quantity, .unit = "deg", .presence = defaulted,
+       .default_text = "0 deg", .range = "[-180 deg, 180 deg]", .stage = stamping, .help = "Warp against x."},
+      {.path = "blank.spacing", .type = KeyType::quantity, .unit = "mm", .presence = required,
+       .range = "(0 mm, 1000 mm)", .stage = stamping,
+       .help = "Upper bound of the node spacing; the size is divided into whole cells."},
+      {.path = "blank.plies", .type = KeyType::integer, .presence = defaulted, .default_text = "1", .range = "[1, 1]",
+       .stage = stamping, .help = "This version forms one ply."},
+      {.path = "tools.punch.shape", .type = KeyType::choice, .presence = required, .choices = {"hemisphere"}, .stage = stamping,
+       .help = "Hemisphere with its apex down and a cylinder above."},
+      {.path = "tools.punch.radius", .type = KeyType::quantity, .unit = "mm", .presence = required,
+       .range = "(0 mm, 10000 mm)", .stage = stamping, .help = "Of hemisphere and cylinder."},
+      {.path = "tools.die.shape", .type = KeyType::choice, .presence = required, .choices = {"ring"}, .stage = stamping,
+       .help = "Plate with a round opening and a filleted edge."},
+      {.path = "tools.die.opening_radius", .type = KeyType::quantity, .unit = "mm", .presence = required,
+       .range = "(0 mm, 10000 mm)", .stage = stamping, .help = "Radius of the opening below the fillet."},
+      {.path = "tools.die.fillet", .type = KeyType::quantity, .unit = "mm", .presence = required,
+       .range = "(0 mm, 10000 mm)", .stage = stamping, .help = "Radius of the rounded edge."},
+      {.path = "tools.binder.shape", .type = KeyType::choice, .presence = required, .choices = {"ring"}, .stage = stamping,
+       .help = "Flat ring under force, free to move up and down."},
+      {.path = "tools.binder.inner_radius", .type = KeyType::quantity, .unit = "mm", .presence = required,
+       .range = "(0 mm, 10000 mm)", .stage = stamping, .help = "Where the binder begins."},
+      {.path = "tools.binder.edge_fillet", .type = KeyType::quantity, .unit = "mm", .presence = defaulted,
+       .default_text = "2 mm", .range = "(0 mm, 1000 mm)", .stage = stamping,
+       .help = "Rounding of the inner edge; keeps contact smooth where fabric leaves it."},
+      {.path = "tools.binder.mass", .type = KeyType::quantity, .unit = "kg", .presence = required,
+       .range = "(0 kg, )", .stage = stamping, .help = "Of the moving binder."},
+      later("tools.punch.file", "Punch shape from a file."),
+      later("tools.punch.length_unit", "Unit of a tool file."),
+      later("tools.punch.mesh_size", "Mesh size of a tool file."),
+      later("tools.die.file", "Die shape from a file."),
+      later("tools.die.length_unit", "Unit of a tool file."),
+      later("tools.die.mesh_size", "Mesh size of a tool file."),
+      later("tools.binder.file", "Binder shape from a file."),
+      later("tools.binder.length_unit", "Unit of a tool file."),
+      later("tools.binder.mesh_size", "Mesh size of a tool file."),
+  };
+}
+
+std::vector<Key> effect_keys() {
+  const std::string on = "effects.tool_temperature_shift";
+  std::vector<Key> keys{
+      {.path = on + ".slope", .type = KeyType::quantity, .unit = "1/K", .presence = required,
+       .range = "[-1 1/K, 1 1/K]", .choices = {"fitted"}, .stage = Stage::friction,
+       .used_when = on,
+       .help = "Change of mu (or of its factor) per kelvin of tool temperature, or fitted; 0 1/K is off."},
+      {.path = on + ".reference", .type = KeyType::quantity, .unit = "degC", .presence = defaulted,
+       .default_text = "85 degC", .range = "[-100 degC, 500 degC]", .stage = Stage::friction, .used_when = on,
+       .help = "Tool temperature at which mu is unchanged (paper, Table 2 baseline)."},
+      {.path = on + ".form", .type = KeyType::choice, .presence = defaulted, .default_text = "term",
+       .choices = {"term", "factor"}, .stage = Stage::friction,
+       .used_when = on,
+       .help = "term: mu + slope (T - reference); factor: mu (1 + slope (T - reference))."},
+  };
+  const std::vector<std::string> to_come{
+      "tool_temperature_film", "static_peak", "sliding_evolution", "stick_slip", "pressure_dependent_area",
+      "orientation", "adhesion", "film_squeeze_out", "dwell_ageing", "solidification", "shear_heating",
+      "wear", "viscosity_plateau", "boundary_lubrication", "shear_rate", "shear_locking",
+      "tension_shear_coupling", "bending", "tow_rate_stiffening", "inter_tow_slip", "crimp_straightening",
+      "shear_thermal_softening", "binder_tilt", "punch_misalignment", "blank_cooling", "press_compliance",
+      "inertia", "binder_force_level", "initial_orientation", "normal_force_relaxation", "load_cell_offset",
+      "gain_drift", "drive_backlash", "nonuniform_pressure", "mislabelled_condition", "discretisation"};
+  for (const std::string& id : to_come) keys.push_back(later("effects." + id, "Effect of a later version."));
+  return keys;
+}
+
+std::vector<Key> artefact_keys() {
+  return {
+      {.path = "artefact.mass_scaling", .type = KeyType::quantity, .presence = defaulted, .default_text = "1",
+       .range = "(0, )", .stage = Stage::stamping, .help = "Factor on areal density. Not physical; 1 is off."},
+      {.path = "artefact.stabilisation", .type = KeyType::quantity, .unit = "N s/m^3", .presence = defaulted,
+       .default_text = "0 N s/m^3", .range = "[0 N s/m^3, )", .stage = Stage::stamping,
+       .help = "Damping of every node per area. Not physical; 0 is off."},
+  };
+}
+// clang-format on
+
+std::vector<Key> all_keys() {
+  std::vector<Key> keys = head_keys();
+  append(keys, weave_keys());
+  append(keys, resin_keys());
+  append(keys, forming_keys());
+  append(keys, friction_keys());
+  append(keys, process_keys());
+  append(keys, blank_and_tool_keys());
+  append(keys, effect_keys());
+  append(keys, artefact_keys());
+  return keys;
+}
+
+struct Bound {
+  double value;
+  std::string text;
+};
+
+Bound bound_of(std::string text, const std::string& unit, double unbounded) {
+  text.erase(0, text.find_first_not_of(' '));
+  if (text.empty()) return {unbounded, ""};
+  const Reading reading = read_quantity(text, unit);
+  if (!reading.ok()) throw std::logic_error(fmt::format("schema bound \"{}\" {}", text, reading.fault));
+  return {reading.value, text};
+}
+
+}  // namespace
+
+const std::vector<Key>& schema() {
+  static const std::vector<Key> keys = all_keys();
+  return keys;
+}
+
+const Key* find_key(const std::string& path) {
+  const auto found =
+      std::find_if(schema().begin(), schema().end(), [&](const Key& key) { return key.path == path; });
+  return found == schema().end() ? nullptr : &*found;
+}
+
+bool is_block(const std::string& path) {
+  const std::string start = path + ".";
+  return std::any_of(schema().begin(), schema().end(),
+                     [&](const Key& key) { return key.path.starts_with(start); });
+}
+
+std::vector<std::string> names_below(const std::string& block) {
+  const std::string start = block.empty() ? "" : block + ".";
+  std::vector<std::string> names;
+  for (const Key& key : schema()) {
+    if (!key.path.starts_with(start)) continue;
+    const std::string rest = key.path.substr(start.size());
+    const std::string name = rest.substr(0, rest.find('.'));
+    if (std::find(names.begin(), names.end(), name) == names.end()) names.push_back(name);
+  }
+  return names;
+}
+
+bool Interval::contains(double value) const {
+  return (low_open ? value > low : value >= low) && (high_open ? value < high : value <= high);
+}
+
+std::string Interval::rule(const std::string& name) const {
+  if (low == high) return fmt::format("{} = {}", name, low_text);
+  std::string text = name;
+  if (!low_text.empty()) text = fmt::format("{} {} {}", low_text, low_open ? "<" : "<=", text);
+  if (!high_text.empty()) text = fmt::format("{} {} {}", text, high_open ? "<" : "<=", high_text);
+  return text;
+}
+
+Interval interval_of(const std::string& range, const std::string& unit) {
+  constexpr double infinity = std::numeric_limits<double>::infinity();
+  if (range.empty()) return {-infinity, infinity, true, true, "", ""};
+  const std::size_t comma = range.find(',');
+  const Bound low = bound_of(range.substr(1, comma - 1), unit, -infinity);
+  const Bound high = bound_of(range.substr(comma + 1, range.size() - comma - 2), unit, infinity);
+  return {low.value, high.value, range.front() == '(', range.back() == ')', low.text, high.text};
+}
+
+}  // namespace heddle::pipeline

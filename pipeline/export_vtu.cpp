@@ -1,0 +1,221 @@
+#include "pipeline/export_vtu.h"
+
+#include <fmt/format.h>
+#include <zlib.h>
+
+#include <algorithm>
+#include <bit>
+#include <cmath>
+#include <cstring>
+#include <limits>
+#include <numbers>
+
+#include "pipeline/outputs.h"
+#include "pipeline/painter.h"
+
+namespace heddle::pipeline {
+
+namespace {
+
+static_assert(std::endian::native == std::endian::little,
+              "the files say LittleEndian and hold the machine's own bytes");
+
+template <class Number>
+std::string bytes_of(const std::vector<Number>& values) {
+  std::string bytes(values.size() * sizeof(Number), '\0');
+  if (!values.empty()) std::memcpy(bytes.data(), values.data(), bytes.size());
+  return bytes;
+}
+
+std::string compressed(std::string_view block) {
+  // Level 1: the next levels cost several times as long for a few per cent of size.
+  constexpr int level = 1;
+  uLongf size = compressBound(block.size());
+  std::string out(size, '\0');
+  if (compress2(reinterpret_cast<Bytef*>(out.data()), &size, reinterpret_cast<const Bytef*>(block.data()),
+                block.size(), level) != Z_OK) {
+    throw OutputError("zlib could not compress a block of " + std::to_string(block.size()) + " bytes");
+  }
+  out.resize(size);
+  return out;
+}
+
+/// The part of a VTK XML file behind the underscore. Each array there is
+///     [blocks][size of a block][size of the last block if it is shorter, else 0][compressed size of each
+///     block] data
+/// with UInt64 numbers (VTK file formats, "XML file formats", compressed appended data).
+class AppendedData {
+ public:
+  /// @return  offset of this array from the byte after the underscore
+  std::size_t add(std::string_view bytes) {
+    const std::size_t offset = data_.size();
+    std::vector<std::uint64_t> header{(bytes.size() + block_size - 1) / block_size, block_size,
+                                      bytes.size() % block_size};
+    std::string blocks;
+    for (std::size_t at = 0; at < bytes.size(); at += block_size) {
+      const std::string block = compressed(bytes.substr(at, block_size));
+      header.push_back(block.size());
+      blocks += block;
+    }
+    data_ += bytes_of(header) + blocks;
+    return offset;
+  }
+  std::string element() const {
+    return "  <AppendedData encoding=\"raw\">\n_" + data_ + "\n  </AppendedData>\n";
+  }
+
+ private:
+  static constexpr std::size_t block_size = 32768;  // VTK's own default
+  std::string data_;
+};
+
+std::string file_of(std::string_view type, std::string_view body, const AppendedData& data) {
+  return fmt::format(
+             "<?xml version=\"1.0\"?>\n<VTKFile type=\"{}\" version=\"1.0\" byte_order=\"LittleEndian\" "
+             "header_type=\"UInt64\" compressor=\"vtkZLibDataCompressor\">\n{}",
+             type, body) +
+         data.element() + "</VTKFile>\n";
+}
+
+std::string array_element(std::string_view type, std::string_view name, int components, std::size_t offset) {
+  return fmt::format(
+      "        <DataArray type=\"{}\" Name=\"{}\" NumberOfComponents=\"{}\" format=\"appended\" "
+      "offset=\"{}\"/>\n",
+      type, escape(name), components, offset);
+}
+
+void require_writable(const std::vector<double>& values, std::string_view name, Precision precision) {
+  const double largest = precision == Precision::single_precision ? double{std::numeric_limits<float>::max()}
+                                                                  : std::numeric_limits<double>::max();
+  for (std::size_t i = 0; i < values.size(); ++i) {
+    if (!(std::abs(values[i]) <= largest))
+      throw OutputError(fmt::format("array {}: entry {} is {}", name, i, values[i]));
+  }
+}
+
+std::string data_elements(const std::vector<DataArray>& arrays, std::size_t places, Precision precision,
+                          AppendedData& data) {
+  std::string out;
+  for (const DataArray& array : arrays) {
+    if (array.components < 1 || array.values.size() != places * static_cast<std::size_t>(array.components)) {
+      throw OutputError(fmt::format("array {}: {} values do not make {} places with {} components",
+                                    array.name, array.values.size(), places, array.components));
+    }
+    require_writable(array.values, array.name, precision);
+    const bool single_precision = precision == Precision::single_precision;
+    const std::string bytes = single_precision
+                                  ? bytes_of(std::vector<float>(array.values.begin(), array.values.end()))
+                                  : bytes_of(array.values);
+    out += array_element(single_precision ? "Float32" : "Float64", array.name, array.components,
+                         data.add(bytes));
+  }
+  return out;
+}
+
+std::string points_element(const QuadMesh& mesh, AppendedData& data) {
+  std::vector<double> flat;
+  for (const auto& point : mesh.points) flat.insert(flat.end(), point.begin(), point.end());
+  require_writable(flat, "Points", Precision::double_precision);
+  return "      <Points>\n" + array_element("Float64", "Points", 3, data.add(bytes_of(flat))) +
+         "      </Points>\n";
+}
+
+std::string cells_element(const QuadMesh& mesh, AppendedData& data) {
+  constexpr std::uint8_t vtk_quad = 9;
+  std::vector<std::int64_t> connectivity, offsets;
+  for (const auto& quad : mesh.quads) {
+    for (const int corner : quad) {
+      if (corner < 0 || static_cast<std::size_t>(corner) >= mesh.points.size()) {
+        throw OutputError(fmt::format("a quad names point {} of {}", corner, mesh.points.size()));
+      }
+      connectivity.push_back(corner);
+    }
+    offsets.push_back(static_cast<std::int64_t>(connectivity.size()));
+  }
+  const std::vector<std::uint8_t> types(mesh.quads.size(), vtk_quad);
+  std::string out = "      <Cells>\n";
+  out += array_element("Int64", "connectivity", 1, data.add(bytes_of(connectivity)));
+  out += array_element("Int64", "offsets", 1, data.add(bytes_of(offsets)));
+  out += array_element("UInt8", "types", 1, data.add(bytes_of(types)));
+  return out + "      </Cells>\n";
+}
+
+}  // namespace
+
+std::string vtu(const QuadMesh& mesh, Precision precision) {
+  AppendedData data;
+  std::string body =
+      fmt::format("  <UnstructuredGrid>\n    <Piece NumberOfPoints=\"{}\" NumberOfCells=\"{}\">\n",
+                  mesh.points.size(), mesh.quads.size());
+  body += "      <PointData>\n" + data_elements(mesh.point_data, mesh.points.size(), precision, data) +
+          "      </PointData>\n";
+  body += "      <CellData>\n" + data_elements(mesh.cell_data, mesh.quads.size(), precision, data) +
+          "      </CellData>\n";
+  body += points_element(mesh, data) + cells_element(mesh, data);
+  body += "    </Piece>\n  </UnstructuredGrid>\n";
+  return file_of("UnstructuredGrid", body, data);
+}
+
+namespace {
+
+template <std::size_t N>
+DataArray array_of(std::string name, const std::vector<std::array<double, N>>& values) {
+  DataArray out{std::move(name), static_cast<int>(N), {}};
+  for (const auto& value : values) out.values.insert(out.values.end(), value.begin(), value.end());
+  return out;
+}
+
+}  // namespace
+
+QuadMesh mesh_of(const macroscale::BlankState& blank) {
+  QuadMesh mesh{blank.position, blank.quads, {}, {}};
+  const auto add = [&](DataArray array) {
+    // A quantity the run did not track is empty, and left out.
+    if (!array.values.empty()) mesh.point_data.push_back(std::move(array));
+  };
+  DataArray angle{"shear_angle_deg", 1, blank.shear_angle};
+  for (double& value : angle.values) value *= 180.0 / std::numbers::pi;
+  add(std::move(angle));
+  add(array_of("tow_strain_warp_weft", blank.tow_strain));
+  add(array_of("reference_position_m", blank.reference));
+  add(array_of("velocity_m_s", blank.velocity));
+  add({"pressure_Pa", 1, blank.pressure});
+  add({"slip_speed_m_s", 1, blank.slip_speed});
+  add({"friction_coefficient", 1, blank.friction_coefficient});
+  add({"hersey_number", 1, blank.hersey});
+  return mesh;
+}
+
+std::string pvd(std::span<const SeriesFrame> frames) {
+  std::string out =
+      "<?xml version=\"1.0\"?>\n<VTKFile type=\"Collection\" version=\"1.0\" byte_order=\"LittleEndian\">\n  "
+      "<Collection>\n";
+  for (const SeriesFrame& frame : frames) {
+    out += fmt::format("    <DataSet timestep=\"{}\" part=\"0\" file=\"{}\"/>\n", shortest(frame.time),
+                       escape(frame.file));
+  }
+  return out + "  </Collection>\n</VTKFile>\n";
+}
+
+std::string vti(const VoxelLabels& voxels) {
+  std::size_t expected = 1;
+  for (const int count : voxels.count) expected *= static_cast<std::size_t>(std::max(count, 0));
+  if (expected != voxels.labels.size()) {
+    throw OutputError(fmt::format("voxel file: {} labels for {} x {} x {} voxels", voxels.labels.size(),
+                                  voxels.count[0], voxels.count[1], voxels.count[2]));
+  }
+  AppendedData data;
+  const std::string extent = fmt::format("0 {} 0 {} 0 {}", voxels.count[0], voxels.count[1], voxels.count[2]);
+  const auto triple = [](const std::array<double, 3>& v) {
+    return shortest(v[0]) + " " + shortest(v[1]) + " " + shortest(v[2]);
+  };
+  std::string body = fmt::format(
+      "  <ImageData WholeExtent=\"{0}\" Origin=\"{1}\" Spacing=\"{2}\">\n    <Piece Extent=\"{0}\">\n",
+      extent, triple(voxels.origin), triple(voxels.spacing));
+  body += "      <PointData/>\n      <CellData Scalars=\"label\">\n" +
+          array_element("UInt16", "label", 1, data.add(bytes_of(voxels.labels))) + "      </CellData>\n";
+  body += "    </Piece>\n  </ImageData>\n";
+  return file_of("ImageData", body, data);
+}
+
+}  // namespace heddle::pipeline

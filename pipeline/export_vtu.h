@@ -1,0 +1,57 @@
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "macroscale/stamping.h"
+
+/// Files for ParaView and VTK: XML with the numbers appended raw and compressed by zlib.
+namespace heddle::pipeline {
+
+/// One value, or several, at each point or in each cell.
+struct DataArray {
+  std::string name;  ///< with its unit, for instance "shear_angle_deg"
+  int components = 1;
+  std::vector<double> values;  ///< components of the first point, then of the second
+};
+
+enum class Precision { single_precision, double_precision };
+
+struct QuadMesh {
+  std::vector<std::array<double, 3>> points;  ///< [m]
+  std::vector<std::array<int, 4>> quads;
+  std::vector<DataArray> point_data, cell_data;
+};
+
+/// A .vtu file. Points are always in double precision; the arrays as asked.
+/// @throws OutputError  if an array does not fit the mesh or a number is not finite; names the array
+std::string vtu(const QuadMesh& mesh, Precision precision = Precision::single_precision);
+
+/// What a picture of the blank needs: displaced nodes with shear angle, tow strains, velocity, contact and
+/// friction.
+QuadMesh mesh_of(const macroscale::BlankState& blank);
+
+struct SeriesFrame {
+  double time = 0.0;  ///< [s]
+  std::string file;   ///< relative to the .pvd file
+};
+
+/// A .pvd file: the frames of a series in order of time.
+std::string pvd(std::span<const SeriesFrame> frames);
+
+/// Labels of the voxels of a cell (tow numbers, phases), x fastest.
+struct VoxelLabels {
+  std::array<int, 3> count{};       ///< voxels along x, y, z
+  std::array<double, 3> origin{};   ///< lowest corner [m]
+  std::array<double, 3> spacing{};  ///< [m]
+  std::vector<std::uint16_t> labels;
+};
+
+/// A .vti file (image data), one label a voxel.
+/// @throws OutputError  if the number of labels is not the number of voxels
+std::string vti(const VoxelLabels& voxels);
+
+}  // namespace heddle::pipeline

@@ -1,0 +1,219 @@
+#include "pipeline/outputs.h"
+
+#include <fmt/format.h>
+
+#include <bit>
+#include <cmath>
+#include <cstring>
+#include <numbers>
+
+namespace heddle::pipeline {
+
+namespace {
+
+constexpr double degrees = 180.0 / std::numbers::pi;
+constexpr double zero_celsius = 273.15;  // [K]
+
+std::string finite(double value, std::string_view quantity, std::size_t row) {
+  if (!std::isfinite(value))
+    throw OutputError(fmt::format("{} in row {} is {}, not a number to write", quantity, row, value));
+  return shortest(value);
+}
+
+/// Quoted only where the separator, a quote or a line break makes it necessary (RFC 4180).
+std::string csv_text(const std::string& text) {
+  if (text.find_first_of(",\"\n\r") == std::string::npos) return text;
+  std::string out = "\"";
+  for (const char c : text) {
+    if (c == '"') out += '"';
+    out += c;
+  }
+  return out + '"';
+}
+
+/// A column and how a row fills it, side by side so that header and values cannot drift apart.
+template <class Row>
+struct Column {
+  std::string_view name;
+  double (*value)(const Row&);
+};
+
+template <class Row, std::size_t N>
+std::string table(std::span<const Row> rows, const Column<Row> (&columns)[N]) {
+  std::string out;
+  for (std::size_t c = 0; c < N; ++c) out += fmt::format("{}{}", c > 0 ? "," : "", columns[c].name);
+  out += '\n';
+  for (std::size_t r = 0; r < rows.size(); ++r) {
+    for (std::size_t c = 0; c < N; ++c) {
+      if (c > 0) out += ',';
+      out += finite(columns[c].value(rows[r]), columns[c].name, r + 1);
+    }
+    out += '\n';
+  }
+  return out;
+}
+
+using History = macroscale::HistoryRow;
+
+constexpr Column<History> history_columns[] = {
+    {"time_s", [](const History& r) { return r.time; }},
+    {"punch_displacement_mm", [](const History& r) { return 1e3 * r.punch_displacement; }},
+    {"punch_force_N", [](const History& r) { return r.punch_force; }},
+    {"die_force_N", [](const History& r) { return r.die_force; }},
+    {"binder_force_N", [](const History& r) { return r.binder_force; }},
+    {"draw_in_max_mm", [](const History& r) { return 1e3 * r.draw_in_max; }},
+    {"shear_angle_max_deg", [](const History& r) { return degrees * r.shear_angle_max; }},
+    {"tow_strain_max", [](const History& r) { return r.tow_strain_max; }},
+    {"newton_iterations", [](const History& r) { return static_cast<double>(r.newton_iterations); }},
+    {"lag_iterations", [](const History& r) { return static_cast<double>(r.lag_iterations); }},
+    {"work_punch_J", [](const History& r) { return r.work_punch; }},
+    {"work_binder_J", [](const History& r) { return r.work_binder; }},
+    {"energy_tow_J", [](const History& r) { return r.energy_tow; }},
+    {"energy_shear_J", [](const History& r) { return r.energy_shear; }},
+    {"energy_bending_J", [](const History& r) { return r.energy_bending; }},
+    {"energy_twist_J", [](const History& r) { return r.energy_twist; }},
+    {"energy_compaction_J", [](const History& r) { return r.energy_compaction; }},
+    {"energy_kinetic_J", [](const History& r) { return r.energy_kinetic; }},
+    {"friction_punch_J", [](const History& r) { return r.friction_punch; }},
+    {"friction_die_J", [](const History& r) { return r.friction_die; }},
+    {"friction_binder_J", [](const History& r) { return r.friction_binder; }},
+    {"dissipation_shear_rate_J", [](const History& r) { return r.dissipation_shear_rate; }},
+    {"dissipation_artefact_J", [](const History& r) { return r.dissipation_artefact; }},
+    {"dissipation_numerical_J", [](const History& r) { return r.dissipation_numerical; }},
+    {"ledger_residual_J", [](const History& r) { return r.ledger_residual; }},
+    {"force_balance_N", [](const History& r) { return r.force_balance; }},
+    // A share of the friction columns, not a column of the ledger: it stands behind them and is not summed.
+    {"friction_work_outside_calibration_J", [](const History& r) { return r.friction_work_outside; }},
+};
+
+constexpr Column<FrictionCurveRow> curve_columns[] = {
+    {"tool_temperature_C", [](const FrictionCurveRow& r) { return r.tool_temperature - zero_celsius; }},
+    {"fabric_temperature_C", [](const FrictionCurveRow& r) { return r.fabric_temperature - zero_celsius; }},
+    {"pressure_Pa", [](const FrictionCurveRow& r) { return r.pressure; }},
+    {"slip_speed_mm_s", [](const FrictionCurveRow& r) { return 1e3 * r.slip_speed; }},
+    {"film_viscosity_Pa_s", [](const FrictionCurveRow& r) { return r.film_viscosity; }},
+    {"hersey_number", [](const FrictionCurveRow& r) { return r.hersey; }},
+    {"friction_coefficient", [](const FrictionCurveRow& r) { return r.friction_coefficient; }},
+};
+
+constexpr Column<FrictionTestRow> friction_test_columns[] = {
+    {"velocity_mm_s", [](const FrictionTestRow& r) { return 1e3 * r.velocity; }},
+    {"normal_force_N", [](const FrictionTestRow& r) { return r.normal_force; }},
+    {"tool_temperature_C", [](const FrictionTestRow& r) { return r.tool_temperature - zero_celsius; }},
+    {"fabric_temperature_C", [](const FrictionTestRow& r) { return r.fabric_temperature - zero_celsius; }},
+    {"orientation_deg", [](const FrictionTestRow& r) { return degrees * r.orientation; }},
+    {"friction_coefficient", [](const FrictionTestRow& r) { return r.friction_coefficient; }},
+    {"pull_force_N", [](const FrictionTestRow& r) { return r.pull_force; }},
+};
+
+struct ContactRow {
+  double shear_angle, pressure;
+  mesoscale::ContactArea::Value area;
+};
+
+constexpr Column<ContactRow> contact_columns[] = {
+    {"shear_angle_deg", [](const ContactRow& r) { return degrees * r.shear_angle; }},
+    {"pressure_Pa", [](const ContactRow& r) { return r.pressure; }},
+    {"contact_area_fraction", [](const ContactRow& r) { return r.area.fraction; }},
+    {"slope_1_Pa", [](const ContactRow& r) { return r.area.slope; }},
+};
+
+std::string optional_cell(const std::optional<double>& value, std::string_view quantity, std::size_t row) {
+  return "," + (value ? finite(*value, quantity, row) : std::string());
+}
+
+std::optional<double> relative_error(double value, const std::optional<double>& measured) {
+  if (!measured || *measured == 0.0) return std::nullopt;
+  return value / *measured - 1.0;
+}
+
+}  // namespace
+
+std::string shortest(double value) {
+  return fmt::format("{}", value);
+}
+
+std::string history_csv(std::span<const History> rows) {
+  return table(rows, history_columns);
+}
+std::string curve_csv(std::span<const FrictionCurveRow> rows) {
+  return table(rows, curve_columns);
+}
+
+std::string contact_csv(const mesoscale::ContactArea& contact, std::span<const double> pressures,
+                        std::span<const double> shear_angles) {
+  std::vector<ContactRow> rows;
+  for (const double angle : shear_angles) {
+    for (const double pressure : pressures)
+      rows.push_back({angle, pressure, contact.evaluate(pressure, angle)});
+  }
+  return table<ContactRow>(rows, contact_columns);
+}
+
+std::optional<double> error_of_model(const FrictionTestRow& row) {
+  return relative_error(row.pull_force, row.measured_force);
+}
+
+std::optional<double> error_of_paper(const FrictionTestRow& row) {
+  return row.paper_force ? relative_error(*row.paper_force, row.measured_force) : std::nullopt;
+}
+
+std::string friction_test_csv(std::span<const FrictionTestRow> rows) {
+  std::string out = "case";
+  for (const auto& column : friction_test_columns) out += fmt::format(",{}", column.name);
+  out += ",measured_force_N,paper_force_N,error,paper_error\n";
+  for (std::size_t r = 0; r < rows.size(); ++r) {
+    const FrictionTestRow& row = rows[r];
+    out += csv_text(row.name);
+    for (const auto& column : friction_test_columns)
+      out += "," + finite(column.value(row), column.name, r + 1);
+    out += optional_cell(row.measured_force, "measured_force_N", r + 1);
+    out += optional_cell(row.paper_force, "paper_force_N", r + 1);
+    out += optional_cell(error_of_model(row), "error", r + 1);
+    out += optional_cell(error_of_paper(row), "paper_error", r + 1) + "\n";
+  }
+  return out;
+}
+
+namespace {
+
+template <class Number>
+void append_bytes(std::string& out, Number value) {
+  static_assert(std::endian::native == std::endian::little,
+                "STL and VTK files are written in the machine's own order");
+  char bytes[sizeof(Number)];
+  std::memcpy(bytes, &value, sizeof(Number));
+  out.append(bytes, sizeof(Number));
+}
+
+std::array<double, 3> unit_normal(const Triangle& t) {
+  const std::array<double, 3> a{t[1][0] - t[0][0], t[1][1] - t[0][1], t[1][2] - t[0][2]};
+  const std::array<double, 3> b{t[2][0] - t[0][0], t[2][1] - t[0][1], t[2][2] - t[0][2]};
+  const std::array<double, 3> n{a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2],
+                                a[0] * b[1] - a[1] * b[0]};
+  const double size = std::hypot(n[0], n[1], n[2]);
+  // The format asks for a zero normal where a triangle has none.
+  return size > 0.0 ? std::array<double, 3>{n[0] / size, n[1] / size, n[2] / size} : std::array<double, 3>{};
+}
+
+}  // namespace
+
+std::string tows_stl(std::span<const Triangle> triangles) {
+  std::string out = "heddle: tows of one cell, millimetres";
+  out.resize(80, ' ');
+  append_bytes(out, static_cast<std::uint32_t>(triangles.size()));
+  for (std::size_t i = 0; i < triangles.size(); ++i) {
+    for (const double component : unit_normal(triangles[i])) append_bytes(out, static_cast<float>(component));
+    for (const auto& corner : triangles[i]) {
+      for (const double component : corner) {
+        if (!std::isfinite(component))
+          throw OutputError(fmt::format("tows.stl: triangle {} has a corner at {}", i, component));
+        append_bytes(out, static_cast<float>(1e3 * component));
+      }
+    }
+    append_bytes(out, std::uint16_t{0});
+  }
+  return out;
+}
+
+}  // namespace heddle::pipeline

@@ -1,0 +1,132 @@
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <filesystem>
+#include <optional>
+#include <span>
+#include <stdexcept>
+#include <string>
+#include <string_view>
+#include <utility>
+#include <vector>
+
+#include "macroscale/stamping.h"
+#include "mesoscale/cell_spec.h"
+
+/// The files of a run as text. Functions named after a file return its bytes; `write_file` puts them in
+/// place. Numbers are written in the shortest form that reads back as the same double, so equal results give
+/// equal bytes. A value that is not finite is never written: the writer throws OutputError and names it.
+namespace heddle::pipeline {
+
+/// A file that cannot be written, or a value that must not be; names the path or the quantity, and the
+/// reason.
+class OutputError : public std::runtime_error {
+ public:
+  using std::runtime_error::runtime_error;
+};
+
+/// Writes under a temporary name beside `path`, then renames: `path` holds the old bytes or all the new ones,
+/// even if the run is interrupted. Creates the folder if it is missing.
+/// @throws OutputError  naming the path and the reason; the temporary file is removed
+void write_file(const std::filesystem::path& path, std::string_view bytes);
+/// @throws OutputError  naming the path and the reason
+std::string read_file(const std::filesystem::path& path);
+
+/// Shortest decimal form of a double that reads back as the same bits.
+std::string shortest(double value);
+
+// ---- tables (CSV)
+// ------------------------------------------------------------------------------------------------
+
+std::string history_csv(std::span<const macroscale::HistoryRow> rows);
+
+/// One test of the sled, by the model, and what others found for it. SI units.
+struct FrictionTestRow {
+  std::string name;                           ///< "baseline"
+  double velocity = 0.0;                      ///< [m/s]
+  double normal_force = 0.0;                  ///< [N]
+  double tool_temperature = 0.0;              ///< [K]
+  double fabric_temperature = 0.0;            ///< [K]
+  double orientation = 0.0;                   ///< [rad]
+  double friction_coefficient = 0.0;          ///< of this model [-]
+  double pull_force = 0.0;                    ///< of this model [N]
+  std::optional<double> measured_force = {};  ///< [N]
+  std::optional<double> paper_force = {};     ///< of the paper's own model [N]
+};
+
+/// Pull force of the model over the measured one, minus one; empty without a measurement.
+std::optional<double> error_of_model(const FrictionTestRow& row);
+std::optional<double> error_of_paper(const FrictionTestRow& row);
+
+/// Columns after pull_force_N: measured_force_N, paper_force_N, error, paper_error (fractions; empty if not
+/// known).
+std::string friction_test_csv(std::span<const FrictionTestRow> rows);
+
+/// One point of the friction law. SI units.
+struct FrictionCurveRow {
+  double tool_temperature = 0.0;      ///< [K]
+  double fabric_temperature = 0.0;    ///< [K]
+  double pressure = 0.0;              ///< nominal [Pa]
+  double slip_speed = 0.0;            ///< [m/s]
+  double film_viscosity = 0.0;        ///< [Pa s]; 0 where the law has none
+  double hersey = 0.0;                ///< [-]; 0 where the law has none
+  double friction_coefficient = 0.0;  ///< [-]
+};
+
+std::string curve_csv(std::span<const FrictionCurveRow> rows);
+
+/// Contact fraction of one face over pressures [Pa] and trellis shear angles [rad]; one row a pair, angles
+/// outermost.
+std::string contact_csv(const mesoscale::ContactArea& contact, std::span<const double> pressures,
+                        std::span<const double> shear_angles);
+
+// ---- records (JSON)
+// ----------------------------------------------------------------------------------------------
+
+/// Parts that were not computed are absent, and their keys with them.
+struct SummaryRecord {
+  std::optional<mesoscale::CellSummary> cell = {};
+  std::optional<double> contact_area_fraction_binder = {};  ///< phi under the binder's mean pressure [-]
+  std::optional<macroscale::StampingSummary> stamping = {};
+};
+
+std::string summary_json(const SummaryRecord& record);
+
+std::string fabric_json(const mesoscale::FabricProperties& fabric);
+/// Reads what fabric_json wrote: every number comes back bit for bit.
+/// @param file  name for messages only
+/// @throws InputError  naming every key that is missing, unknown, of the wrong type, or holds a table against
+/// the rules
+mesoscale::FabricProperties read_fabric_json(std::string_view text, const std::string& file);
+
+struct StageRecord {
+  std::string name;
+  double wall_time = 0.0;    ///< [s]
+  double cpu_time = 0.0;     ///< [s]
+  double peak_memory = 0.0;  ///< [byte]
+  bool reused = false;       ///< taken from the cache, not computed
+};
+
+/// All that may differ between two equal runs: versions, machine, times. Every other file is free of it.
+struct Manifest {
+  std::string name;
+  std::vector<std::pair<std::string, std::string>>
+      versions;                                             ///< of the program and of the libraries behind it
+  std::vector<std::pair<std::string, std::string>> hashes;  ///< of inputs and sources
+  std::vector<std::pair<std::string, std::string>> machine;  ///< processor, cores, BLAS kernel
+  std::vector<StageRecord> stages;
+};
+
+std::string manifest_json(const Manifest& manifest);
+
+// ---- geometry
+// ----------------------------------------------------------------------------------------------------
+
+/// Corners [m], counter-clockwise seen from outside.
+using Triangle = std::array<std::array<double, 3>, 3>;
+
+/// Binary STL in millimetres, which is what readers of STL assume; normals from the corners.
+std::string tows_stl(std::span<const Triangle> triangles);
+
+}  // namespace heddle::pipeline

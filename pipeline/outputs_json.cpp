@@ -1,0 +1,374 @@
+#include <fmt/format.h>
+
+#include <cmath>
+#include <nlohmann/json.hpp>
+#include <numbers>
+#include <set>
+
+#include "pipeline/outputs.h"
+
+namespace heddle::pipeline {
+
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+constexpr double degrees = 180.0 / std::numbers::pi;
+
+// ---- writing
+// -----------------------------------------------------------------------------------------------------
+
+/// A whole double keeps its point, so that readers see a real number and "-0.0" keeps its sign.
+std::string real_text(double value, const std::string& place) {
+  if (!std::isfinite(value)) throw OutputError(fmt::format("{} is {}, not a number to write", place, value));
+  std::string text = shortest(value);
+  if (text.find_first_of(".e") == std::string::npos) text += ".0";
+  return text;
+}
+
+bool is_plain(const Json& array) {
+  return std::none_of(array.begin(), array.end(), [](const Json& entry) { return entry.is_structured(); });
+}
+
+/// JSON as text: an object has a line for each key, a list of numbers stays on one line.
+std::string text_of(const Json& node, const std::string& place, int depth) {
+  if (node.is_number_float()) return real_text(node.get<double>(), place);
+  if (!node.is_structured()) return node.dump();
+  const bool object = node.is_object();
+  const bool broken = object || !is_plain(node);
+  const std::string indent = broken ? "\n" + std::string(2 * (static_cast<std::size_t>(depth) + 1), ' ') : "";
+  std::string out = object ? "{" : "[";
+  std::size_t i = 0;
+  for (const auto& [key, value] : node.items()) {
+    if (i++ > 0) out += broken ? "," : ", ";
+    const std::string inner = (place.empty() ? "" : place + ".") + key;
+    out += indent + (object ? Json(key).dump() + ": " : "") + text_of(value, inner, depth + 1);
+  }
+  if (broken && i > 0) out += "\n" + std::string(2 * static_cast<std::size_t>(depth), ' ');
+  return out + (object ? "}" : "]");
+}
+
+std::string file_text(const Json& root) {
+  return text_of(root, "", 0) + "\n";
+}
+
+Json cell_json(const mesoscale::CellSummary& cell, const std::optional<double>& fraction_under_binder) {
+  Json out{{"areal_density_kg_m2", cell.areal_density},
+           {"crimp_warp", cell.crimp[0]},
+           {"crimp_weft", cell.crimp[1]},
+           {"crimp_angle_warp_deg", degrees * cell.crimp_angle[0]},
+           {"crimp_angle_weft_deg", degrees * cell.crimp_angle[1]},
+           {"gap_closure_angle_deg", degrees * cell.gap_closure_angle},
+           {"locking_angle_deg", degrees * cell.locking_angle},
+           {"tow_fibre_volume_fraction", cell.tow_fibre_volume_fraction},
+           {"tow_solid_volume_fraction", cell.tow_solid_volume_fraction},
+           {"contact_area_fraction", cell.contact_area_fraction},
+           {"tow_section_area_mm2", 1e6 * cell.tow_section_area},
+           {"consolidated_thickness_mm", 1e3 * cell.consolidated_thickness}};
+  if (fraction_under_binder) out["contact_area_fraction_binder"] = *fraction_under_binder;
+  return out;
+}
+
+Json stamping_json(const macroscale::StampingSummary& summary) {
+  Json out{{"completed", summary.completed},
+           {"peak_punch_force_N", summary.peak_punch_force},
+           {"shear_angle_max_deg", degrees * summary.shear_angle_max},
+           {"draw_in_max_mm", 1e3 * summary.draw_in_max},
+           {"energy_residual_max", summary.energy_residual_max},
+           {"force_balance_residual_max", summary.force_balance_residual_max},
+           {"numerical_dissipation_share", summary.numerical_dissipation_share},
+           {"twist_share", summary.twist_share}};
+  // A blank that is not a 0/90 square has no eightfold symmetry to miss.
+  if (summary.symmetry_gap_shear >= 0.0) out["symmetry_gap_shear"] = summary.symmetry_gap_shear;
+  if (summary.symmetry_gap_draw_in >= 0.0) out["symmetry_gap_draw_in"] = summary.symmetry_gap_draw_in;
+  out["friction_work_outside_calibration"] = summary.friction_work_outside;
+  out["falling_branch"] = summary.falling_branch;
+  out["nodes"] = summary.nodes;
+  out["spacing_mm"] = {1e3 * summary.spacing[0], 1e3 * summary.spacing[1]};
+  out["steps"] = summary.steps;
+  out["rejected_steps"] = summary.rejected_steps;
+  out["newton_iterations"] = summary.newton_iterations;
+  if (!summary.failure.empty()) out["failure"] = summary.failure;
+  return out;
+}
+
+/// Names of one table of the fabric file: the key of its abscissa and of its ordinate.
+struct CurveKeys {
+  const char* x;
+  const char* y;
+};
+constexpr CurveKeys shear_stress_keys{"sine_of_shear_angle", "stress_N_m"};
+constexpr CurveKeys bending_keys{"temperature_K", "stiffness_N_m"};
+constexpr CurveKeys compaction_keys{"approach_m", "pressure_Pa"};
+constexpr CurveKeys contact_keys{"log_pressure_Pa", "log_area_fraction"};
+
+Json curve_json(const Curve& curve, CurveKeys keys) {
+  return {{keys.x, curve.x()}, {keys.y, curve.y()}};
+}
+
+Json family_json(const CurveFamily& family, CurveKeys keys) {
+  Json curves = Json::array();
+  for (const Curve& curve : family.curves()) curves.push_back(curve_json(curve, keys));
+  return {{"shear_angle_rad", family.parameter()}, {"curves", std::move(curves)}};
+}
+
+Json surface_json(const Surface& surface) {
+  return {{"warp_strain_first", surface.x0()}, {"warp_strain_step", surface.dx()},
+          {"warp_strain_count", surface.nx()}, {"weft_strain_first", surface.y0()},
+          {"weft_strain_step", surface.dy()},  {"weft_strain_count", surface.ny()},
+          {"energy_J_m2", surface.values()}};
+}
+
+// ---- reading
+// -----------------------------------------------------------------------------------------------------
+
+/// Walks a file, and gathers every problem on the way instead of stopping at the first.
+class Reader {
+ public:
+  Reader(std::string file, Problems& problems) : file_(std::move(file)), problems_(problems) {}
+
+  void report(const std::string& key, const std::string& value, const std::string& rule) {
+    problems_.push_back(
+        {"fabric." + key, key, value, rule, "Write the file anew with `heddle weave CASE.yaml`.", file_, 0});
+  }
+
+  /// The node under `key`, or nullptr with a problem noted.
+  const Json* member(const Json& parent, const std::string& place, const std::string& key) {
+    const auto found = parent.is_object() ? parent.find(key) : parent.end();
+    if (parent.is_object() && found != parent.end()) return &*found;
+    report(path(place, key), "", "is missing");
+    return nullptr;
+  }
+
+  template <class T>
+  void get(T& out, const Json& parent, const std::string& place, const std::string& key) {
+    const Json* node = member(parent, place, key);
+    if (!node) return;
+    try {
+      out = node->get<T>();
+    } catch (const Json::exception&) {
+      report(path(place, key), shortened(node->dump()), fmt::format("must be {}", kind_of(out)));
+    }
+  }
+
+  void only(const Json& parent, const std::string& place, const std::set<std::string>& known) {
+    if (!parent.is_object()) return;
+    for (const auto& [key, value] : parent.items()) {
+      if (!known.contains(key))
+        report(path(place, key), shortened(value.dump()), "is not a key of this file");
+    }
+  }
+
+  /// Problems so far: a table is made only of parts that were all in order.
+  std::size_t count() const { return problems_.size(); }
+
+  static std::string path(const std::string& place, const std::string& key) {
+    return place.empty() ? key : place + "." + key;
+  }
+
+ private:
+  static std::string shortened(std::string text) {
+    return text.size() > 40 ? text.substr(0, 37) + "..." : text;
+  }
+  static const char* kind_of(double) { return "a number"; }
+  static const char* kind_of(int) { return "a whole number"; }
+  static const char* kind_of(const std::string&) { return "a text"; }
+  static const char* kind_of(const std::vector<double>&) { return "a list of numbers"; }
+  static const char* kind_of(const std::vector<std::string>&) { return "a list of texts"; }
+  static const char* kind_of(const std::array<double, 2>&) { return "a list of two numbers"; }
+  std::string file_;
+  Problems& problems_;
+};
+
+/// Makes a table if nothing was wrong with its parts since `before`. One that breaks the rules of its class
+/// is a problem of the file, told in the class's own words.
+template <class Make>
+void construct(Reader& reader, const std::string& place, std::size_t before, const Make& make) {
+  if (reader.count() > before) return;
+  try {
+    make();
+  } catch (const std::invalid_argument& fault) {
+    reader.report(place, "", fault.what());
+  }
+}
+
+Curve read_curve(Reader& reader, const Json& node, const std::string& place, CurveKeys keys) {
+  const std::size_t before = reader.count();
+  std::vector<double> x, y;
+  reader.get(x, node, place, keys.x);
+  reader.get(y, node, place, keys.y);
+  reader.only(node, place, {keys.x, keys.y});
+  Curve curve;
+  if (x.empty() && y.empty()) return curve;
+  construct(reader, place, before, [&] { curve = Curve(x, y); });
+  return curve;
+}
+
+CurveFamily read_family(Reader& reader, const Json& node, const std::string& place, CurveKeys keys) {
+  const std::size_t before = reader.count();
+  std::vector<double> parameter;
+  reader.get(parameter, node, place, "shear_angle_rad");
+  reader.only(node, place, {"shear_angle_rad", "curves"});
+  std::vector<Curve> curves;
+  if (const Json* list = reader.member(node, place, "curves")) {
+    if (!list->is_array()) reader.report(Reader::path(place, "curves"), "", "must be a list of tables");
+    std::size_t i = 0;
+    for (const Json& entry : *list) {
+      curves.push_back(read_curve(reader, entry, fmt::format("{}.curves[{}]", place, i++), keys));
+    }
+  }
+  CurveFamily family;
+  if (parameter.empty() && curves.empty()) return family;
+  construct(reader, place, before, [&] { family = CurveFamily(parameter, curves); });
+  return family;
+}
+
+Surface read_surface(Reader& reader, const Json& node, const std::string& place) {
+  const std::size_t before = reader.count();
+  double x0 = 0.0, dx = 0.0, y0 = 0.0, dy = 0.0;
+  int nx = 0, ny = 0;
+  std::vector<double> values;
+  reader.get(x0, node, place, "warp_strain_first");
+  reader.get(dx, node, place, "warp_strain_step");
+  reader.get(nx, node, place, "warp_strain_count");
+  reader.get(y0, node, place, "weft_strain_first");
+  reader.get(dy, node, place, "weft_strain_step");
+  reader.get(ny, node, place, "weft_strain_count");
+  reader.get(values, node, place, "energy_J_m2");
+  reader.only(node, place,
+              {"warp_strain_first", "warp_strain_step", "warp_strain_count", "weft_strain_first",
+               "weft_strain_step", "weft_strain_count", "energy_J_m2"});
+  Surface surface;
+  if (nx == 0 && ny == 0 && values.empty()) return surface;
+  construct(reader, place, before, [&] { surface = Surface(x0, dx, nx, y0, dy, ny, values); });
+  return surface;
+}
+
+mesoscale::ShearRate read_shear_rate(Reader& reader, const Json& node) {
+  mesoscale::ShearRate rate;
+  const std::string place = "shear_rate";
+  reader.get(rate.consistency, node, place, "consistency_N_s_n_m");
+  reader.get(rate.index, node, place, "index");
+  reader.get(rate.activation_temperature, node, place, "activation_temperature_K");
+  reader.get(rate.reference_temperature, node, place, "reference_temperature_K");
+  reader.only(node, place,
+              {"consistency_N_s_n_m", "index", "activation_temperature_K", "reference_temperature_K"});
+  return rate;
+}
+
+mesoscale::Provenance read_provenance(Reader& reader, const Json& node) {
+  mesoscale::Provenance provenance;
+  const std::string place = "provenance";
+  reader.get(provenance.specification, node, place, "specification");
+  reader.get(provenance.unverified, node, place, "unverified");
+  reader.get(provenance.grid_error, node, place, "grid_error");
+  reader.only(node, place, {"specification", "unverified", "grid_error"});
+  return provenance;
+}
+
+mesoscale::FabricProperties read_fabric(Reader& reader, const Json& root) {
+  mesoscale::FabricProperties fabric;
+  reader.get(fabric.areal_density, root, "", "areal_density_kg_m2");
+  reader.get(fabric.pitch, root, "", "pitch_m");
+  reader.get(fabric.thickness, root, "", "thickness_m");
+  if (const Json* node = reader.member(root, "", "tension_energy")) {
+    fabric.tension_energy = read_surface(reader, *node, "tension_energy");
+  }
+  if (const Json* node = reader.member(root, "", "shear_stress")) {
+    fabric.shear_stress = read_curve(reader, *node, "shear_stress", shear_stress_keys);
+  }
+  if (const Json* node = reader.member(root, "", "shear_rate"))
+    fabric.shear_rate = read_shear_rate(reader, *node);
+  if (const Json* node = reader.member(root, "", "bending")) {
+    static constexpr std::array<const char*, 2> ways{"warp", "weft"};
+    for (std::size_t way = 0; way < 2; ++way) {
+      const Json* curve = reader.member(*node, "bending", ways[way]);
+      if (curve)
+        fabric.bending[way] = read_curve(reader, *curve, fmt::format("bending.{}", ways[way]), bending_keys);
+    }
+    reader.only(*node, "bending", {"warp", "weft"});
+  }
+  if (const Json* node = reader.member(root, "", "compaction")) {
+    fabric.compaction = read_family(reader, *node, "compaction", compaction_keys);
+  }
+  if (const Json* node = reader.member(root, "", "contact")) {
+    fabric.contact.log_fraction = read_family(reader, *node, "contact", contact_keys);
+  }
+  if (const Json* node = reader.member(root, "", "provenance"))
+    fabric.provenance = read_provenance(reader, *node);
+  reader.only(root, "",
+              {"areal_density_kg_m2", "pitch_m", "thickness_m", "tension_energy", "shear_stress",
+               "shear_rate", "bending", "compaction", "contact", "provenance"});
+  return fabric;
+}
+
+Json texts_json(const std::vector<std::pair<std::string, std::string>>& entries) {
+  Json out = Json::object();
+  for (const auto& [key, value] : entries) out[key] = value;
+  return out;
+}
+
+}  // namespace
+
+std::string summary_json(const SummaryRecord& record) {
+  Json root = Json::object();
+  if (record.cell) root["mesoscale"] = cell_json(*record.cell, record.contact_area_fraction_binder);
+  if (record.stamping) root["macroscale"] = stamping_json(*record.stamping);
+  return file_text(root);
+}
+
+std::string fabric_json(const mesoscale::FabricProperties& fabric) {
+  const Json root{{"areal_density_kg_m2", fabric.areal_density},
+                  {"pitch_m", fabric.pitch},
+                  {"thickness_m", fabric.thickness},
+                  {"tension_energy", surface_json(fabric.tension_energy)},
+                  {"shear_stress", curve_json(fabric.shear_stress, shear_stress_keys)},
+                  {"shear_rate",
+                   {{"consistency_N_s_n_m", fabric.shear_rate.consistency},
+                    {"index", fabric.shear_rate.index},
+                    {"activation_temperature_K", fabric.shear_rate.activation_temperature},
+                    {"reference_temperature_K", fabric.shear_rate.reference_temperature}}},
+                  {"bending",
+                   {{"warp", curve_json(fabric.bending[0], bending_keys)},
+                    {"weft", curve_json(fabric.bending[1], bending_keys)}}},
+                  {"compaction", family_json(fabric.compaction, compaction_keys)},
+                  {"contact", family_json(fabric.contact.log_fraction, contact_keys)},
+                  {"provenance",
+                   {{"specification", fabric.provenance.specification},
+                    {"unverified", fabric.provenance.unverified},
+                    {"grid_error", fabric.provenance.grid_error}}}};
+  return file_text(root);
+}
+
+mesoscale::FabricProperties read_fabric_json(std::string_view text, const std::string& file) {
+  Problems problems;
+  mesoscale::FabricProperties fabric;
+  try {
+    const Json root = Json::parse(text);
+    Reader reader(file, problems);
+    fabric = read_fabric(reader, root);
+  } catch (const Json::exception& error) {
+    problems.push_back({"fabric.json.syntax", "", "", fmt::format("must be JSON; {}", error.what()),
+                        "Write the file anew with `heddle weave CASE.yaml`.", file, 0});
+  }
+  if (!problems.empty()) throw InputError(std::move(problems));
+  return fabric;
+}
+
+std::string manifest_json(const Manifest& manifest) {
+  Json stages = Json::object();
+  for (const StageRecord& stage : manifest.stages) {
+    stages[stage.name] = {{"wall_s", stage.wall_time},
+                          {"cpu_s", stage.cpu_time},
+                          {"peak_memory_MB", 1e-6 * stage.peak_memory},
+                          {"reused", stage.reused}};
+  }
+  const Json root{{"name", manifest.name},
+                  {"versions", texts_json(manifest.versions)},
+                  {"hashes", texts_json(manifest.hashes)},
+                  {"machine", texts_json(manifest.machine)},
+                  {"stages", std::move(stages)}};
+  return file_text(root);
+}
+
+}  // namespace heddle::pipeline

@@ -1,0 +1,288 @@
+#include "pipeline/report.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include "pipeline/report_figures.h"
+#include "pipeline/report_style.h"
+
+namespace heddle::pipeline {
+
+namespace {
+
+constexpr double degrees = 180.0 / std::numbers::pi;
+
+// ---- pieces of a page
+// --------------------------------------------------------------------------------------------
+
+std::string section(std::string_view title, const std::string& body) {
+  return body.empty() ? "" : fmt::format("<section>\n<h2>{}</h2>\n{}</section>\n", escape(title), body);
+}
+
+/// @param caption  says what to see in the picture
+std::string figure(const Canvas& picture, std::string_view caption) {
+  return fmt::format("<figure>\n{}<figcaption>{}</figcaption>\n</figure>\n", picture.inline_svg(),
+                     escape(caption));
+}
+
+std::string pair(const std::string& left, const std::string& right) {
+  return left.empty() && right.empty() ? "" : "<div class=\"pair\">\n" + left + right + "</div>\n";
+}
+
+std::string facts_table(const std::vector<Condition>& facts) {
+  if (facts.empty()) return "";
+  std::string out = "<table class=\"facts\">\n";
+  for (const Condition& fact : facts) {
+    out += fmt::format("<tr><td>{}</td><td>{}</td></tr>\n", escape(fact.name), escape(fact.value));
+  }
+  return out + "</table>\n";
+}
+
+std::string list(const std::vector<std::string>& texts) {
+  if (texts.empty()) return "";
+  std::string out = "<ul class=\"notes\">\n";
+  for (const std::string& text : texts) out += fmt::format("<li>{}</li>\n", escape(text));
+  return out + "</ul>\n";
+}
+
+// ---- the top of the page
+// -----------------------------------------------------------------------------------------
+
+std::string result(std::string_view name, const std::string& value, std::string_view unit) {
+  return fmt::format("<div><dt>{}</dt><dd>{}<small>{}{}</small></dd></div>\n", escape(name), escape(value),
+                     unit == "°" ? "" : "\u2009", escape(unit));
+}
+
+std::string results(const ReportInput& input) {
+  std::string out;
+  if (input.stamping) {
+    const auto& summary = *input.stamping;
+    out += result("Peak punch force", significant(summary.peak_punch_force, 4), "N");
+    out += result("Largest shear angle", fmt::format("{:.1f}", degrees * summary.shear_angle_max), "°");
+    out += result("Largest draw-in", significant(1e3 * summary.draw_in_max, 3), "mm");
+    out += result("Energy residual", significant(100.0 * summary.energy_residual_max, 2), "%");
+  } else if (input.cell) {
+    const auto& cell = *input.cell;
+    out += result("Areal density", significant(cell.areal_density, 3), "kg/m²");
+    out += result("Crimp", significant(100.0 * cell.crimp[0], 4), "%");
+    out += result("Gap closure", fmt::format("{:.2f}", degrees * cell.gap_closure_angle), "°");
+    out += result("Contact fraction", significant(100.0 * cell.contact_area_fraction, 3), "%");
+  }
+  return out.empty() ? "" : "<dl class=\"results\">\n" + out + "</dl>\n";
+}
+
+struct ToneWords {
+  std::string_view style, word;
+};
+
+ToneWords words(Tone tone) {
+  switch (tone) {
+    case Tone::holds:
+      return {"holds", "✓ holds"};
+    case Tone::note:
+      return {"note", "· note"};
+    case Tone::attention:
+      return {"attention", "! attention"};
+    case Tone::fails:
+      return {"fails", "✗ fails"};
+  }
+  return {"fails", "✗ fails"};
+}
+
+std::string verdict_list(const ReportInput& input) {
+  std::string out;
+  for (const Verdict& verdict : verdicts(input)) {
+    const ToneWords tone = words(verdict.tone);
+    out += fmt::format("<li class=\"{}\"><span class=\"tone\">{}</span><span>{}</span></li>\n", tone.style,
+                       tone.word, escape(verdict.text));
+  }
+  return out.empty() ? "" : "<ul class=\"verdicts\">\n" + out + "</ul>\n";
+}
+
+std::string header(const ReportInput& input) {
+  const std::string_view kind = input.stamping ? "Stamping report"
+                                : input.cell   ? "Unit-cell report"
+                                               : "Friction report";
+  std::string out =
+      fmt::format("<header>\n<p class=\"kind\">heddle · {}</p>\n<h1>{}</h1>\n", kind, escape(input.name));
+  if (!input.description.empty()) out += fmt::format("<p class=\"lead\">{}</p>\n", escape(input.description));
+  return out + "</header>\n";
+}
+
+// ---- sections
+// ----------------------------------------------------------------------------------------------------
+
+std::string formed_part(const ReportInput& input) {
+  if (!input.blank) return "";
+  return pair(
+      figure(formed_picture(*input.blank),
+             "The formed blank, turned over so that the dome points up; white lines follow some of its tows. "
+             "Look for shear between the two tow directions, where the tows run at 45° to the edge of the "
+             "dome."),
+      figure(top_picture(*input.blank),
+             "The same from above. The dashed outline is the blank before forming: the distance to it is the "
+             "draw-in. A part that is not symmetric here has buckled or was set up so."));
+}
+
+std::string forces(const ReportInput& input) {
+  if (input.history.size() < 2) return "";
+  return figure(force_chart(input.history),
+                "Forces on the tools over the stroke. The binder holds its force; the punch force grows as "
+                "the fabric "
+                "wraps the dome, shears, and slides over the die.") +
+         pair(figure(draw_in_chart(input.history),
+                     "How far the outline has moved in, at the point that moved most."),
+              figure(shear_chart(input.history), "The largest trellis shear angle anywhere in the blank."));
+}
+
+std::string soundness(const ReportInput& input) {
+  if (input.history.size() < 2) return "";
+  return figure(ledger_chart(input.history),
+                "The energy ledger. Bands are what the work was spent on, added up: blue is stored, orange "
+                "is friction, "
+                "green and grey are other losses. The line is the work of punch and binder; it should lie on "
+                "the "
+                "top of the stack.") +
+         pair(figure(residual_chart(input.history),
+                     "What the ledger leaves over, on its own axis. The limit is 1 % either way."),
+              figure(iteration_chart(input.history),
+                     "Newton iterations of each accepted step. A rise marks a hard moment: first contact, "
+                     "sticking, buckling."));
+}
+
+std::vector<Condition> cell_facts(const mesoscale::CellSummary& cell) {
+  const auto angle = [](double radians) { return fmt::format("{:.2f}°", degrees * radians); };
+  const auto percent = [](double share, int digits) { return significant(100.0 * share, digits) + " %"; };
+  const auto both = [](const std::string& warp, const std::string& weft) {
+    return warp == weft ? warp : fmt::format("{} warp, {} weft", warp, weft);
+  };
+  return {
+      {"Areal density", significant(cell.areal_density, 4) + " kg/m²"},
+      {"Crimp (tow length over pitch, less one)", both(percent(cell.crimp[0], 4), percent(cell.crimp[1], 4))},
+      {"Crimp angle", both(angle(cell.crimp_angle[0]), angle(cell.crimp_angle[1]))},
+      {"Gap closure (neighbouring tows touch)", angle(cell.gap_closure_angle)},
+      {"Locking (shear ten times as stiff as at 20°)", angle(cell.locking_angle)},
+      {"Glass in the tow, by volume", percent(cell.tow_fibre_volume_fraction, 3)},
+      {"Glass and resin in the tow, by volume", percent(cell.tow_solid_volume_fraction, 3)},
+      {"Contact fraction of one face at 0.05 mm depth", percent(cell.contact_area_fraction, 3)},
+      {"Tow section", significant(1e6 * cell.tow_section_area, 4) + " mm²"},
+      {"Consolidated thickness", significant(1e3 * cell.consolidated_thickness, 3) + " mm"}};
+}
+
+std::string weave(const ReportInput& input) {
+  std::string out;
+  if (!input.section.empty()) {
+    out += figure(section_picture(input.section),
+                  "Section through the weave, at true proportions. Weft tows (blue) are cut across; the warp "
+                  "tow (brown) "
+                  "runs over and under them and nowhere cuts into them.");
+  }
+  std::string left, right;
+  if (!input.height.height.empty()) {
+    left = figure(height_picture(input.height),
+                  "The upper face of the cell. A flat tool meets the light crowns first; the dark gaps stay "
+                  "clear of it.");
+  }
+  if (input.cell) right = "<div>\n" + facts_table(cell_facts(*input.cell)) + "</div>\n";
+  return out + pair(left, right);
+}
+
+std::string signed_percent(const std::optional<double>& share) {
+  if (!share) return "–";
+  std::string text = fmt::format("{:+.1f} %", 100.0 * *share);
+  if (text.front() == '-') text.replace(0, 1, "\u2212");
+  return text;
+}
+
+std::string friction_table(const std::vector<FrictionTestRow>& rows) {
+  if (rows.empty()) return "";
+  const auto newtons = [](const std::optional<double>& force) {
+    return force ? significant(*force, 4) : std::string("–");
+  };
+  std::string out =
+      "<h3>Friction tests</h3>\n<div class=\"scroll\"><table>\n<tr><th>Case</th><th "
+      "class=\"number\">Speed<br>mm/s</th>"
+      "<th class=\"number\">Normal force<br>N</th><th class=\"number\">Tool<br>°C</th><th "
+      "class=\"number\">Fabric<br>°C</th>"
+      "<th class=\"number\">Direction<br>°</th><th class=\"number\">μ<br>model</th><th class=\"number\">Pull "
+      "force<br>model, N</th>"
+      "<th class=\"number\">Pull force<br>measured, N</th><th class=\"number\">Error<br>model</th>"
+      "<th class=\"number\">Error<br>published model</th></tr>\n";
+  for (const FrictionTestRow& row : rows) {
+    out += fmt::format("<tr><td>{}</td>", escape(row.name));
+    for (const std::string& cell :
+         {significant(1e3 * row.velocity, 4), significant(row.normal_force, 4),
+          fmt::format("{:.0f}", row.tool_temperature - 273.15),
+          fmt::format("{:.0f}", row.fabric_temperature - 273.15),
+          fmt::format("{:.0f}", degrees * row.orientation), fmt::format("{:.3f}", row.friction_coefficient),
+          significant(row.pull_force, 4), newtons(row.measured_force), signed_percent(error_of_model(row)),
+          signed_percent(error_of_paper(row))}) {
+      out += fmt::format("<td class=\"number\">{}</td>", cell);
+    }
+    out += "</tr>\n";
+  }
+  return out + "</table></div>\n";
+}
+
+std::string friction_section(const ReportInput& input) {
+  std::string contact, hersey, speed;
+  if (input.fabric && !input.fabric->contact.log_fraction.empty()) {
+    contact = figure(
+        contact_chart(input.fabric->contact),
+        "Share of the fabric face that touches a flat tool, against nominal pressure, for several trellis "
+        "shear angles γ. The steeper the line, the less friction depends on pressure.");
+  }
+  const auto& curve = input.friction_curve;
+  if (std::any_of(curve.begin(), curve.end(), [](const FrictionCurveRow& row) { return row.hersey > 0.0; })) {
+    hersey =
+        figure(friction_chart(curve, FrictionAbscissa::hersey),
+               "Friction coefficient against Hersey number. Curves that fall on one another depend on speed, "
+               "pressure and viscosity through this number alone.");
+  }
+  if (!curve.empty()) {
+    speed =
+        figure(friction_chart(curve, FrictionAbscissa::speed),
+               "Friction coefficient against slip speed at several nominal pressures and tool temperatures.");
+  }
+  return contact + pair(hersey, speed) + friction_table(input.friction_test);
+}
+
+std::string grounds(const ReportInput& input) {
+  std::string out;
+  if (!input.conditions.empty()) {
+    const auto half =
+        input.conditions.begin() + static_cast<std::ptrdiff_t>((input.conditions.size() + 1) / 2);
+    out += "<div class=\"columns\">\n" + facts_table({input.conditions.begin(), half}) +
+           facts_table({half, input.conditions.end()}) + "</div>\n";
+  }
+  if (!input.notes.empty()) out += "<h3>Assumptions</h3>\n" + list(input.notes);
+  return out;
+}
+
+}  // namespace
+
+std::string report_html(const ReportInput& input) {
+  std::string out = fmt::format(
+      "<!doctype html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\">\n"
+      "<meta name=\"viewport\" content=\"width=device-width, initial-scale=1\">\n<title>{} · "
+      "heddle</title>\n<style>",
+      escape(input.name));
+  out += report_style() + "</style>\n</head>\n<body>\n<main>\n";
+  out += header(input) + results(input) + verdict_list(input);
+  out += section("The formed part", formed_part(input));
+  out += section("Forces and motion", forces(input));
+  out += section("Is the answer sound?", soundness(input));
+  out += section("The weave", weave(input));
+  out += section("Contact and friction", friction_section(input));
+  out += section("What it rests on", grounds(input));
+  out +=
+      "<footer>Written by heddle. Numbers behind the charts: history.csv, summary.json, fabric.json in the "
+      "same folder. "
+      "Angles in degrees, forces in newtons.</footer>\n";
+  return out + "</main>\n</body>\n</html>\n";
+}
+
+}  // namespace heddle::pipeline

@@ -1,0 +1,302 @@
+#include "pipeline/report_figures.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <stdexcept>
+
+namespace heddle::pipeline {
+
+namespace {
+
+constexpr double degrees = 180.0 / std::numbers::pi;
+using macroscale::HistoryRow;
+using Rows = std::vector<HistoryRow>;
+
+template <class Value>
+std::vector<double> column(const Rows& rows, double factor, Value value) {
+  std::vector<double> out;
+  for (const HistoryRow& row : rows) out.push_back(factor * static_cast<double>(row.*value));
+  return out;
+}
+
+std::vector<double> stroke(const Rows& rows) {
+  return column(rows, 1e3, &HistoryRow::punch_displacement);
+}
+
+const Axis stroke_axis{"Punch displacement", "mm", Scale::linear, 0.0, {}};
+
+}  // namespace
+
+Canvas force_chart(const Rows& history) {
+  const std::vector<double> x = stroke(history);
+  LineChart chart;
+  chart.label = "Forces of punch, die and binder against punch displacement";
+  chart.x = stroke_axis;
+  chart.y = {"Force", "N"};
+  chart.series = {{"Punch", x, column(history, 1.0, &HistoryRow::punch_force)},
+                  {"Die", x, column(history, 1.0, &HistoryRow::die_force)},
+                  {"Binder", x, column(history, 1.0, &HistoryRow::binder_force)}};
+  chart.width = full_width;
+  chart.height = 380.0;
+  chart.label_room = 90.0;
+  return draw(chart);
+}
+
+namespace {
+
+LineChart small_chart(std::string label, Axis y, const Rows& history, std::vector<double> values) {
+  LineChart chart;
+  chart.label = std::move(label);
+  chart.x = stroke_axis;
+  chart.y = std::move(y);
+  chart.series = {{"", stroke(history), std::move(values)}};
+  chart.width = half_width;
+  chart.height = 280.0;
+  return chart;
+}
+
+}  // namespace
+
+Canvas draw_in_chart(const Rows& history) {
+  return draw(small_chart("Largest draw-in against punch displacement", {"Largest draw-in", "mm"}, history,
+                          column(history, 1e3, &HistoryRow::draw_in_max)));
+}
+
+Canvas shear_chart(const Rows& history) {
+  return draw(small_chart("Largest shear angle against punch displacement", {"Largest shear angle", "°"},
+                          history, column(history, degrees, &HistoryRow::shear_angle_max)));
+}
+
+Canvas iteration_chart(const Rows& history) {
+  Axis axis{"Newton iterations a step", ""};
+  axis.low = 0.0;
+  return draw(small_chart("Newton iterations of each step against punch displacement", axis, history,
+                          column(history, 1.0, &HistoryRow::newton_iterations)));
+}
+
+std::vector<double> residual_shares(const Rows& history) {
+  std::vector<double> shares;
+  if (history.empty()) return shares;
+  const double floor = 0.01 * std::abs(history.back().work_punch);
+  for (const HistoryRow& row : history) {
+    const double work = std::max(row.work_punch, floor);
+    shares.push_back(work > 0.0 ? row.ledger_residual / work : 0.0);
+  }
+  return shares;
+}
+
+Canvas residual_chart(const Rows& history) {
+  std::vector<double> percent = residual_shares(history);
+  for (double& share : percent) share *= 100.0;
+  return draw(small_chart("Residual of the energy ledger against punch displacement",
+                          {"Ledger residual", "% of punch work"}, history, std::move(percent)));
+}
+
+Canvas ledger_chart(const Rows& history) {
+  struct Entry {
+    const char* name;
+    double HistoryRow::*value;
+    int style;
+  };
+  // Bottom to top; stored energy blue, friction orange, other losses green and grey.
+  static constexpr std::array<Entry, 12> entries{
+      {{"Tow stretch", &HistoryRow::energy_tow, 0},
+       {"Fabric shear", &HistoryRow::energy_shear, 1},
+       {"Bending", &HistoryRow::energy_bending, 2},
+       {"Compaction", &HistoryRow::energy_compaction, 3},
+       {"Kinetic", &HistoryRow::energy_kinetic, 4},
+       {"Twist control", &HistoryRow::energy_twist, 5},
+       {"Friction, die", &HistoryRow::friction_die, 6},
+       {"Friction, binder", &HistoryRow::friction_binder, 7},
+       {"Friction, punch", &HistoryRow::friction_punch, 8},
+       {"Resin shear rate", &HistoryRow::dissipation_shear_rate, 9},
+       {"Time stepping", &HistoryRow::dissipation_numerical, 10},
+       {"Artefacts", &HistoryRow::dissipation_artefact, 11}}};
+  StackedChart chart;
+  chart.label = "Where the work of the tools goes, against punch displacement";
+  chart.x = stroke_axis;
+  chart.y = {"Energy", "J"};
+  chart.at = stroke(history);
+  for (const Entry& entry : entries) {
+    chart.bands.push_back({entry.name, {}, column(history, 1.0, entry.value)});
+    chart.band_style.push_back(entry.style);
+  }
+  Series work{"Work of the tools", {}, column(history, 1.0, &HistoryRow::work_punch)};
+  for (std::size_t i = 0; i < history.size(); ++i) work.y[i] += history[i].work_binder;
+  chart.lines = {std::move(work)};
+  chart.width = full_width;
+  chart.height = 400.0;
+  return draw(chart);
+}
+
+namespace {
+
+/// Range of the values, never empty.
+std::pair<double, double> range(const std::vector<double>& values) {
+  const auto [low, high] = std::minmax_element(values.begin(), values.end());
+  return *high > *low ? std::pair{*low, *high} : std::pair{*low, *low + 1.0};
+}
+
+}  // namespace
+
+Canvas height_picture(const HeightField& height) {
+  GridPicture picture;
+  picture.label = "Height of the upper face of the weave, seen from above";
+  picture.nx = height.nx;
+  picture.ny = height.ny;
+  picture.spacing_x = height.spacing_x;
+  picture.spacing_y = height.spacing_y;
+  for (const double value : height.height) picture.value.push_back(1e3 * value);
+  if (picture.value.empty()) throw std::invalid_argument("height field: no values");
+  const auto [low, high] = range(picture.value);
+  picture.colours = {low, high, "Height", "mm", ColourMap::height};
+  picture.width = half_width;
+  return draw(picture);
+}
+
+Canvas section_picture(const std::vector<SectionLine>& section) {
+  SectionPicture picture;
+  picture.label = "Section through one cell with its tows";
+  picture.along = "Along the warp";
+  picture.lines = section;
+  picture.width = full_width;
+  return draw(picture);
+}
+
+Canvas contact_chart(const mesoscale::ContactArea& contact) {
+  LineChart chart;
+  chart.label = "Contact fraction against pressure for several shear angles";
+  chart.x = {"Nominal pressure", "kPa", Scale::logarithmic};
+  chart.y = {"Contact fraction", "%", Scale::logarithmic};
+  const auto& angles = contact.log_fraction.parameter();
+  const auto& table = contact.log_fraction.curves();
+  // First, middle and last angle tell the trend; more lines than that lie on top of one another.
+  std::vector<std::size_t> shown{0, angles.size() / 2, angles.size() - 1};
+  shown.erase(std::unique(shown.begin(), shown.end()), shown.end());
+  for (const std::size_t k : shown) {
+    Series series{fmt::format("γ = {:.0f}°", degrees * angles[k]), {}, {}};
+    constexpr int points = 60;
+    const double low = table[k].x().front(), high = table[k].x().back();
+    for (int i = 0; i <= points; ++i) {
+      const double pressure = std::exp(low + (high - low) * i / points);
+      series.x.push_back(1e-3 * pressure);
+      series.y.push_back(100.0 * contact.evaluate(pressure, angles[k]).fraction);
+    }
+    chart.series.push_back(std::move(series));
+  }
+  chart.width = full_width;
+  chart.height = 340.0;
+  chart.label_room = 82.0;
+  return draw(chart);
+}
+
+namespace {
+
+bool same_curve(const FrictionCurveRow& a, const FrictionCurveRow& b) {
+  return a.pressure == b.pressure && a.tool_temperature == b.tool_temperature &&
+         a.fabric_temperature == b.fabric_temperature;
+}
+
+std::string curve_name(const FrictionCurveRow& row) {
+  return fmt::format("{:.4g} kPa, {:.0f} °C", 1e-3 * row.pressure, row.tool_temperature - 273.15);
+}
+
+}  // namespace
+
+Canvas friction_chart(const std::vector<FrictionCurveRow>& rows, FrictionAbscissa abscissa) {
+  const bool by_hersey = abscissa == FrictionAbscissa::hersey;
+  LineChart chart;
+  chart.label =
+      by_hersey ? "Friction coefficient against Hersey number" : "Friction coefficient against slip speed";
+  chart.x = by_hersey ? Axis{"Hersey number", "", Scale::logarithmic}
+                      : Axis{"Slip speed", "mm/s", Scale::logarithmic};
+  chart.y = {"Friction coefficient", ""};
+  chart.y.low = 0.0;
+  for (std::size_t i = 0; i < rows.size(); ++i) {
+    if (i == 0 || !same_curve(rows[i - 1], rows[i])) chart.series.push_back({curve_name(rows[i]), {}, {}});
+    chart.series.back().x.push_back(by_hersey ? rows[i].hersey : 1e3 * rows[i].slip_speed);
+    chart.series.back().y.push_back(rows[i].friction_coefficient);
+  }
+  chart.width = half_width;
+  chart.height = 320.0;
+  chart.label_room = 118.0;
+  return draw(chart);
+}
+
+namespace {
+
+/// Every so many-th grid line of a blank, the last one included.
+std::vector<int> thinned(int cells, int wanted) {
+  const int stride = std::max(1, (cells + wanted - 1) / wanted);
+  std::vector<int> lines;
+  for (int i = 0; i < cells; i += stride) lines.push_back(i);
+  lines.push_back(cells);
+  return lines;
+}
+
+void require_complete(const macroscale::BlankState& blank) {
+  const std::size_t nodes = static_cast<std::size_t>(blank.nu + 1) * static_cast<std::size_t>(blank.nv + 1);
+  if (blank.nu < 1 || blank.nv < 1 || blank.position.size() != nodes || blank.shear_angle.size() != nodes ||
+      blank.reference.size() != nodes) {
+    throw std::invalid_argument(fmt::format(
+        "blank of {} x {} cells: {} positions, {} references and {} shear angles do not fit", blank.nu,
+        blank.nv, blank.position.size(), blank.reference.size(), blank.shear_angle.size()));
+  }
+}
+
+/// The blank coloured by the size of its shear angle, with some of its tows drawn as threads. Fine blanks are
+/// drawn with fewer quads: beyond this number they only make the file large.
+MeshPicture mesh_picture(const macroscale::BlankState& blank) {
+  require_complete(blank);
+  constexpr int most_cells = 72, threads = 18;
+  const std::vector<int> u = thinned(blank.nu, most_cells), v = thinned(blank.nv, most_cells);
+  MeshPicture picture;
+  for (const int i : u) {
+    for (const int j : v) {
+      const auto node = static_cast<std::size_t>(i * (blank.nv + 1) + j);
+      picture.points.push_back(blank.position[node]);
+      picture.value.push_back(degrees * std::abs(blank.shear_angle[node]));
+    }
+  }
+  const int cells_u = static_cast<int>(u.size()) - 1, cells_v = static_cast<int>(v.size()) - 1;
+  const int every_u = std::max(1, cells_u / threads), every_v = std::max(1, cells_v / threads);
+  for (int i = 0; i < cells_u; ++i) {
+    for (int j = 0; j < cells_v; ++j) {
+      const int first = i * (cells_v + 1) + j, next = first + cells_v + 1;
+      picture.quads.push_back({first, next, next + 1, first + 1});
+      const bool along_u = j % every_v == every_v / 2, along_v = i % every_u == every_u / 2;
+      picture.threads.push_back(static_cast<std::uint8_t>((along_u ? 1 : 0) | (along_v ? 2 : 0)));
+    }
+  }
+  const double largest = *std::max_element(picture.value.begin(), picture.value.end());
+  picture.colours = {0.0, largest > 0.0 ? largest : 1.0, "Shear angle", "°", ColourMap::angle};
+  picture.width = half_width;
+  picture.height = 450.0;
+  return picture;
+}
+
+}  // namespace
+
+Canvas formed_picture(const macroscale::BlankState& blank) {
+  MeshPicture picture = mesh_picture(blank);
+  picture.label = "The formed blank in three dimensions, turned over, coloured by shear angle";
+  picture.camera = {-62.0, 40.0, true};
+  return draw(picture);
+}
+
+Canvas top_picture(const macroscale::BlankState& blank) {
+  MeshPicture picture = mesh_picture(blank);
+  picture.label = "The formed blank from above, coloured by shear angle, with its first outline";
+  const std::size_t columns = static_cast<std::size_t>(blank.nv) + 1, last = blank.reference.size() - 1;
+  const std::array<std::size_t, 5> corners{0, last + 1 - columns, last, columns - 1, 0};
+  std::vector<std::array<double, 3>> outline;
+  for (const std::size_t node : corners)
+    outline.push_back({blank.reference[node][0], blank.reference[node][1], 0.0});
+  picture.outlines = {std::move(outline)};
+  return draw(picture);
+}
+
+}  // namespace heddle::pipeline

@@ -1,0 +1,189 @@
+// Friction with answers known in closed form: V5, V6, V15 of the solver's verification plan.
+#include <catch2/catch.hpp>
+
+#include <cmath>
+#include <numbers>
+
+#include "macroscale/ledger.h"
+#include "macroscale/pull_out.h"
+#include "macroscale/solve.h"
+#include "tests/macroscale/sample_fabric.h"
+#include "tests/macroscale/steps.h"
+
+using namespace heddle::macroscale;
+using heddle::test::make_fabric;
+using heddle::test::run_steps;
+using Eigen::Vector3d;
+using Eigen::VectorXd;
+
+TEST_CASE("V5: the friction test through the finite elements gives 2 mu N with Coulomb 0.3", "[macroscale][verification][friction]") {
+  const double load = GENERATE(218.0, 343.0, 1000.0, 1500.0, 4000.0);
+  CAPTURE(load);
+  heddle::friction::Model model;
+  model.law = heddle::friction::Coulomb{0.3};
+  const auto result = run_pull_out({.normal_force = load}, make_fabric({}), model);
+  REQUIRE(result.completed);
+  CHECK(result.steady_force == Approx(2.0 * 0.3 * load).epsilon(1e-3));
+  CHECK(result.pressure_spread < 0.01);  // V2: uniform pressure on a plate
+}
+
+TEST_CASE("V5: with a rate law the finite elements meet the law at the pressure and speed of the rig", "[macroscale][verification][friction]") {
+  heddle::friction::Model model;
+  model.law = heddle::friction::HerseyPower{0.6, 0.14};
+  PullOutSpec spec;
+  spec.speed = GENERATE(1.66e-3, 41.67e-3);
+  const auto result = run_pull_out(spec, make_fabric({}), model);
+  REQUIRE(result.completed);
+  heddle::friction::Context context;
+  context.slip_speed = spec.speed;
+  context.pressure = spec.normal_force / (spec.size[0] * spec.size[1]);
+  context.fabric_temperature = spec.fabric_temperature;
+  context.tool_temperature = spec.tool_temperature;
+  const double mu = heddle::friction::evaluate(model, context, {}).mu;
+  CHECK(result.steady_force == Approx(2.0 * mu * spec.normal_force).epsilon(1e-3));
+}
+
+namespace {
+
+// A narrow strip laid over a cylinder through `wrap` radians, one end pulled back by a dead load, the other drawn
+// along its tangent. Returns tension at the drawn end over tension at the loaded one.
+double capstan_ratio(double mu, double wrap, int per_radius) {
+  const auto fabric = make_fabric({.bending = 1e-9, .contact_stiffness = 5e9});
+  heddle::friction::Model friction;
+  friction.law = heddle::friction::Coulomb{mu};
+  const double radius = 0.05, thickness = fabric.thickness, mid = radius + 0.5 * thickness;
+  const double tail = 0.03, length = 2.0 * tail + mid * wrap, tension = 20.0;
+  Scene scene;
+  scene.blank = make_blank({length, 0.005}, radius / per_radius);
+  scene.fabric = &fabric;
+  scene.friction = &friction;
+  scene.tools = {{Role::die, CylinderShape{{0, 0, 0}, radius}, Motion::fixed, 0.0, 0.0}};
+  scene.slip_smoothing = 1e-6;
+  scene.shear_rate = false;
+  const Blank& blank = scene.blank;
+
+  // Along the strip: tangent line, arc, tangent line; s = 0 at the crown.
+  const double half = 0.5 * wrap;
+  const auto place = [&](double s) {
+    const double arc = std::clamp(s / mid, -half, half), rest = s - mid * arc;
+    return Vector3d(mid * std::sin(arc) + rest * std::cos(arc), 0.0, mid * std::cos(arc) - rest * std::sin(arc));
+  };
+  scene.held.assign(3 * blank.nodes(), 0);
+  scene.load.assign(3 * blank.nodes(), 0.0);
+  const Vector3d forward(std::cos(half), 0.0, -std::sin(half)), backward(-std::cos(half), 0.0, -std::sin(half));
+  for (int j = 0; j <= blank.nv; ++j)
+    for (int c = 0; c < 3; ++c) {
+      scene.held[3 * blank.node(blank.nu, j) + c] = 1;
+      scene.load[3 * blank.node(0, j) + c] = tension * backward[c] * (j == 0 || j == blank.nv ? 0.5 : 1.0) / blank.nv;
+    }
+  System system(scene);
+  State state = initial_state(scene);
+  for (int i = 0; i < blank.nodes(); ++i) {
+    const Vector3d r = blank.reference[i];
+    state.x.segment<3>(3 * i) = place(r.x()) + Vector3d(0, r.y(), 0);
+  }
+  const VectorXd laid = state.x;
+  const double speed = 0.01;
+  const auto draw = [&](double time, VectorXd& x) {
+    for (int j = 0; j <= blank.nv; ++j) {
+      const int n = blank.node(blank.nu, j);
+      x.segment<3>(3 * n) = laid.segment<3>(3 * n) + speed * time * forward;
+    }
+  };
+  double drawn = 0.0;
+  run_steps(system, state, 0.01, 40, draw, [&](const StepData& step, const State& end) {
+    drawn = account(system, step, end).forces.by_supports.dot(forward);
+  });
+  return drawn / tension;
+}
+
+// Friction loads followed to 0.1 %: the answers below are exact to that.
+SolveOptions tight_lag() {
+  SolveOptions options;
+  options.lag_tolerance = 1e-3;
+  return options;
+}
+
+// A strip held between plate and binder, drawn over the die's shoulder and straight down its wall: tension [N].
+// The ring is so large (5 m) that its edge is a straight shoulder to a 5 mm strip.
+double draw_in_tension(double mu, double binder_force, bool shoulder) {
+  const auto fabric = make_fabric({.bending = 1e-5, .contact_stiffness = 5e9});
+  heddle::friction::Model friction;
+  friction.law = heddle::friction::Coulomb{mu};
+  const double opening = 5.0, fillet = 0.02, half = 0.5 * fabric.thickness, flat = 0.1, drop = 0.02;
+  const double arc = (fillet + half) * 0.5 * std::numbers::pi;
+  const double length = shoulder ? flat + arc + drop : flat + 0.02;
+  Scene scene;
+  scene.blank = make_blank({length, 0.005}, 2.5e-3);  // an eighth of the shoulder radius
+  scene.fabric = &fabric;
+  scene.friction = &friction;
+  scene.tools = {{Role::die, RingShape{-half, opening, fillet, true}, Motion::fixed, 0.0, 0.0},
+                 {Role::binder, RingShape{half, opening + fillet - 2e-3, 2e-3, false}, Motion::loaded, binder_force, 0.5}};
+  scene.slip_smoothing = 4e-6;
+  scene.shear_rate = false;
+  Blank& blank = scene.blank;
+  // s = distance from the far end along the strip; the shoulder starts where `flat` is used up.
+  const double edge = opening + fillet;
+  const auto place = [&](double s) -> Vector3d {
+    if (s <= flat) return {edge + flat - s, 0.0, 0.0};
+    if (!shoulder) return {edge + flat - s, 0.0, 0.0};
+    const double angle = std::min((s - flat) / (fillet + half), 0.5 * std::numbers::pi), rest = s - flat - angle * (fillet + half);
+    return {edge - (fillet + half) * std::sin(angle), 0.0, -half - fillet + (fillet + half) * std::cos(angle) - rest};
+  };
+  const Vector3d pull = shoulder ? Vector3d(0, 0, -1) : Vector3d(-1, 0, 0);
+  System system(scene);
+  State state = initial_state(scene);
+  for (int i = 0; i < blank.nodes(); ++i) {
+    const Vector3d r = blank.reference[i];
+    state.x.segment<3>(3 * i) = place(r.x() + 0.5 * length) + Vector3d(0, r.y(), 0);
+  }
+  // Where the binder will come to rest: its force over the strip it covers.
+  const double approach = approach_at(system.compaction(), binder_force / (flat * 0.005));
+  for (int i = 0; i < blank.nodes(); ++i)
+    if (blank.reference[i].x() + 0.5 * length < flat) state.x[3 * i + 2] -= approach;
+  state.x[3 * blank.nodes()] = -2.0 * approach;
+  scene.held.assign(3 * blank.nodes(), 0);
+  for (int j = 0; j <= blank.nv; ++j)
+    for (int c = 0; c < 3; ++c) scene.held[3 * blank.node(blank.nu, j) + c] = 1;
+  const VectorXd laid = state.x;
+  const double speed = 0.02;
+  const auto draw = [&](double time, VectorXd& x) {
+    for (int j = 0; j <= blank.nv; ++j) {
+      const int n = blank.node(blank.nu, j);
+      x.segment<3>(3 * n) = laid.segment<3>(3 * n) + speed * time * pull;
+    }
+  };
+  double tension = 0.0;
+  run_steps(system, state, 0.005, 60, draw, [&](const StepData& step, const State& end) {
+    tension = account(system, step, end).forces.by_supports.dot(pull);
+  }, tight_lag());
+  return tension;
+}
+
+}  // namespace
+
+TEST_CASE("V6: tension over a cylinder grows by exp(mu theta)", "[macroscale][verification][friction]") {
+  const double wrap = 0.5 * std::numbers::pi;
+  const double exact = std::exp(0.3 * wrap);
+  const double coarse = capstan_ratio(0.3, wrap, 10), fine = capstan_ratio(0.3, wrap, 20);
+  CAPTURE(coarse, fine, exact);
+  CHECK(fine == Approx(exact).epsilon(0.005));
+  CHECK(capstan_ratio(0.0, wrap, 20) == Approx(1.0).epsilon(0.002));
+}
+
+TEST_CASE("V15: a strip drawn from under the binder carries twice mu times the binder force", "[macroscale][verification][friction]") {
+  const double mu = 0.3;
+  const double t1 = draw_in_tension(mu, 50.0, false), t2 = draw_in_tension(mu, 200.0, false);
+  const double slope = (t2 - t1) / 150.0, intercept = t1 - 50.0 * slope;
+  CAPTURE(t1, t2);
+  CHECK(slope == Approx(2.0 * mu).epsilon(0.005));
+  CHECK(std::abs(intercept) < 0.01 * t1);
+}
+
+TEST_CASE("V15: over the die's shoulder that tension grows by exp(mu pi / 2)", "[macroscale][verification][friction]") {
+  const double mu = 0.3;
+  const double t1 = draw_in_tension(mu, 50.0, true), t2 = draw_in_tension(mu, 200.0, true);
+  const double slope = (t2 - t1) / 150.0;
+  CAPTURE(t1, t2);
+  CHECK(slope == Approx(2.0 * mu * std::exp(mu * 0.5 * std::numbers::pi)).epsilon(0.005));
+}

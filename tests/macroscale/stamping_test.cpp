@@ -1,0 +1,124 @@
+#include <catch2/catch.hpp>
+
+#include <cmath>
+
+#include "macroscale/punch_profile.h"
+#include "macroscale/quality.h"
+#include "macroscale/stamping.h"
+#include "tests/macroscale/sample_fabric.h"
+
+using namespace heddle::macroscale;
+using heddle::test::make_fabric;
+using heddle::test::SampleFabric;
+
+namespace {
+
+StampingSpec small_case() {
+  StampingSpec spec;
+  spec.blank.spacing = 16e-3;  // 21 x 21 nodes
+  spec.process.stroke = 40e-3;
+  spec.process.time = 0.25;
+  spec.process.steps = 20;
+  return spec;
+}
+
+heddle::friction::Model coulomb() {
+  heddle::friction::Model model;
+  model.law = heddle::friction::Coulomb{0.3};
+  return model;
+}
+
+StampingResult run(const StampingSpec& spec, double rate_consistency = 0.0) {
+  return run_stamping(spec, make_fabric({.rate_consistency = rate_consistency}), coulomb());
+}
+
+}  // namespace
+
+TEST_CASE("a small stamping closes its energy ledger and its force balance, and keeps the symmetries of the square", "[macroscale][stamping]") {
+  const auto result = run(small_case(), 5.0);
+  const StampingSummary& s = result.summary;
+  REQUIRE(s.completed);
+  CHECK(s.rejected_steps <= 2);
+  CHECK(s.peak_punch_force > 10.0);
+  CHECK(s.energy_residual_max < 0.01);
+  CHECK(s.force_balance_residual_max < 1e-3);
+  CHECK(s.symmetry_gap_shear < 1e-3);
+  CHECK(s.symmetry_gap_draw_in < 1e-3);
+  CHECK(s.twist_share < 0.005);
+
+  // The check can fail: without one of its columns the ledger is open.
+  for (double HistoryRow::*column : {&HistoryRow::energy_tow, &HistoryRow::friction_binder, &HistoryRow::energy_shear}) {
+    auto history = result.history;
+    for (HistoryRow& row : history) row.*column = 0.0;
+    CHECK(energy_residual_max(history) > 0.01);
+  }
+}
+
+TEST_CASE("work of the punch is the area under its force against stroke", "[macroscale][stamping]") {
+  StampingSpec spec = small_case();
+  spec.process.steps = 40;
+  const auto result = run(spec);
+  double area = 0.0, force = 0.0, stroke = 0.0;
+  for (const HistoryRow& row : result.history) {
+    area += 0.5 * (force + row.punch_force) * (row.punch_displacement - stroke);
+    force = row.punch_force;
+    stroke = row.punch_displacement;
+  }
+  // End-of-step forces overestimate a rising force by half a step's rise.
+  CHECK(result.history.back().work_punch == Approx(area).epsilon(0.05));
+  CHECK(result.history.back().work_punch > area);
+}
+
+TEST_CASE("a rate-free fabric with constant mu does not feel the punch speed; scaled mass and resin do", "[macroscale][stamping]") {
+  const auto peak = [](double speed, double mass, double rate) {
+    StampingSpec spec = small_case();
+    spec.process.speed_scale = speed;
+    spec.artefact.mass_scaling = mass;
+    spec.shear_rate = rate > 0.0;
+    const auto result = run(spec, rate);
+    REQUIRE(result.summary.completed);
+    return result.summary.peak_punch_force;
+  };
+  const double slow = peak(0.5, 1.0, 0.0), base = peak(1.0, 1.0, 0.0), fast = peak(2.0, 1.0, 0.0);
+  CHECK(slow == Approx(base).epsilon(0.002));
+  CHECK(fast == Approx(base).epsilon(0.002));
+  CHECK(std::abs(peak(2.0, 1000.0, 0.0) / base - 1.0) > 0.1);
+
+  const double slow_resin = peak(0.5, 1.0, 20.0), resin = peak(1.0, 1.0, 20.0), fast_resin = peak(2.0, 1.0, 20.0);
+  const double signature = (fast_resin - resin) / (resin - slow_resin);
+  CAPTURE(slow_resin, resin, fast_resin);
+  CHECK(resin > base);
+  CHECK(signature > 1.0);  // 2^n = 1.30 for the resin term alone
+  CHECK(signature < 2.5);
+}
+
+TEST_CASE("the same stamping twice gives the same bytes", "[macroscale][stamping]") {
+  StampingSpec spec = small_case();
+  spec.process.steps = 5;
+  const auto a = run(spec, 5.0), b = run(spec, 5.0);
+  REQUIRE(a.history.size() == b.history.size());
+  for (std::size_t k = 0; k < a.history.size(); ++k) CHECK(a.history[k].punch_force == b.history[k].punch_force);
+  CHECK(a.final_state.position == b.final_state.position);
+}
+
+TEST_CASE("punch travel and time are inverse to each other and end at the stroke", "[macroscale][stamping]") {
+  ProcessSpec process;
+  process.speed_scale = GENERATE(0.5, 1.0, 2.0);
+  CHECK(stroke_at_time(process, stroke_time(process)) == Approx(process.stroke));
+  CHECK(mean_speed(process) == Approx(process.speed_scale * 0.07 / 0.43));
+  for (double share : {0.0, 0.3, 0.98, 0.995, 1.0})
+    CHECK(stroke_at_time(process, time_at_stroke(process, share * process.stroke)) == Approx(share * process.stroke).margin(1e-12));
+}
+
+TEST_CASE("a stamping that cannot work is refused with every reason at once", "[macroscale][stamping]") {
+  StampingSpec spec;
+  spec.blank.size = {0.15, 0.15};
+  spec.process.steps = 0;
+  spec.die.opening_radius = 0.06;
+  const auto problems = check(spec);
+  REQUIRE(problems.size() >= 3);
+  for (const char* id : {"blank.size.reach", "process.steps.range", "tools.die.opening_radius.clearance"})
+    CHECK(std::any_of(problems.begin(), problems.end(), [&](const auto& p) { return p.id == id; }));
+  CHECK(check(StampingSpec{}).empty());
+  CHECK_THROWS_AS(run_stamping(spec, make_fabric({}), coulomb()), heddle::InputError);
+}

@@ -1,0 +1,160 @@
+#include <catch2/catch.hpp>
+
+#include <random>
+
+#include <Eigen/Geometry>
+
+#include "macroscale/ledger.h"
+#include "macroscale/system.h"
+#include "tests/derivative_check.h"
+#include "tests/macroscale/sample_fabric.h"
+
+using namespace heddle::macroscale;
+using heddle::test::derivative_gap;
+using heddle::test::make_fabric;
+using Eigen::Vector3d;
+using Eigen::VectorXd;
+
+namespace {
+
+struct Bench {
+  heddle::mesoscale::FabricProperties fabric = make_fabric({.rate_consistency = 5.0});
+  heddle::friction::Model friction;
+  Scene scene;
+  State state;
+  StepData step;
+};
+
+// A crumpled little blank between a punch, a die plate and a loaded binder, with every term of the potential alive.
+std::unique_ptr<Bench> bench() {
+  auto b = std::make_unique<Bench>();
+  b->friction.law = heddle::friction::Coulomb{0.3};
+  b->scene.blank = make_blank({0.04, 0.03}, 0.01);
+  b->scene.fabric = &b->fabric;
+  b->scene.friction = &b->friction;
+  b->scene.tools = {{Role::punch, HemisphereShape{{0, 0, 0.75e-3}, 0.05}, Motion::driven, 0.0, 0.0},
+                    {Role::die, PlaneShape{{0, 0, -0.75e-3}, {0, 0, 1}}, Motion::fixed, 0.0, 0.0},
+                    {Role::binder, PlaneShape{{0, 0, 0.75e-3}, {0, 0, -1}}, Motion::loaded, 40.0, 0.5}};
+  b->scene.slip_smoothing = 1e-3;
+  b->scene.stabilisation = 100.0;
+  b->state = initial_state(b->scene);
+  b->step.dt = 5e-3;
+  b->step.start = &b->state;
+  b->step.target = b->state.x;
+  b->step.tool_z = {-1e-4, 0.0, 0.0};
+  b->step.friction.assign(3, std::vector<FrictionPoint>(b->scene.blank.nodes()));
+  for (auto& tool : b->step.friction)
+    for (auto& point : tool) {
+      point.load = 0.5;
+      point.context.pressure = 1e4;
+    }
+  return b;
+}
+
+VectorXd shaken(const Bench& b, double size) {
+  std::mt19937 random(7);
+  std::uniform_real_distribution<double> uniform(-size, size);
+  VectorXd x = b.state.x;
+  for (double& value : x) value += uniform(random);
+  return x;
+}
+
+VectorXd multiply(const heddle::SymmetricPattern& pattern, std::span<const double> values, const VectorXd& d) {
+  VectorXd y = VectorXd::Zero(d.size());
+  for (int j = 0; j < pattern.size; ++j)
+    for (int k = pattern.column_start[j]; k < pattern.column_start[j + 1]; ++k) {
+      y[pattern.row[k]] += values[k] * d[j];
+      if (pattern.row[k] != j) y[j] += values[k] * d[pattern.row[k]];
+    }
+  return y;
+}
+
+}  // namespace
+
+TEST_CASE("the residual is the slope of the incremental potential, the matrix the slope of the residual", "[macroscale][system][derivative]") {
+  const auto b = bench();
+  System system(b->scene);
+  const VectorXd x = shaken(*b, 2e-4), d = shaken(*b, 1.0) - b->state.x;
+  const VectorXd g = system.gradient(b->step, x);
+  const auto potential = [&](double t) {
+    const VectorXd y = x + t * d;
+    return system.potential(b->step, y).total() + system.friction_difference(b->step, x, y);
+  };
+  CHECK(derivative_gap(potential, 0.0, 1e-4, g.dot(d)) < 1e-6);
+  CHECK(derivative_gap(potential, 0.0, 1e-4, 1.01 * g.dot(d)) > 1e-4);
+
+  system.assemble(b->step, x, Filter::none);
+  const VectorXd h = multiply(system.solver().pattern(), system.solver().values(), d);
+  double best = 1e300;
+  for (double t : {1e-6, 1e-7, 1e-8}) {
+    const VectorXd difference = (system.gradient(b->step, x + t * d) - system.gradient(b->step, x - t * d)) / (2.0 * t);
+    best = std::min(best, (difference - h).norm() / h.norm());
+  }
+  CHECK(best < 1e-6);
+}
+
+TEST_CASE("a held unknown has no residual and an identity row", "[macroscale][system]") {
+  const auto b = bench();
+  b->scene.held.assign(3 * b->scene.blank.nodes(), 0);
+  b->scene.held[7] = 1;
+  System system(b->scene);
+  const VectorXd x = shaken(*b, 2e-4);
+  CHECK(system.gradient(b->step, x)[7] == 0.0);
+  CHECK(system.full_gradient(b->step, x)[7] != 0.0);
+  system.assemble(b->step, x, Filter::none);
+  VectorXd e = VectorXd::Zero(x.size());
+  e[7] = 1.0;
+  CHECK((multiply(system.solver().pattern(), system.solver().values(), e) - e).norm() == 0.0);
+}
+
+TEST_CASE("V1: rigid motion costs nothing, and a turned blank has turned forces", "[macroscale][system][invariant]") {
+  const auto b = bench();
+  b->scene.tools.clear();
+  b->scene.stabilisation = 0.0;
+  b->scene.shear_rate = false;
+  b->state = initial_state(b->scene);
+  b->step.start = &b->state;
+  System system(b->scene);
+  const Eigen::Matrix3d r = Eigen::AngleAxisd(0.8, Vector3d(1, -2, 0.5).normalized()).toRotationMatrix();
+  const auto moved = [&](const VectorXd& x) {
+    VectorXd y = x;
+    for (int i = 0; i < b->scene.blank.nodes(); ++i) y.segment<3>(3 * i) = r * x.segment<3>(3 * i) + Vector3d(0.1, 0.2, 0.3);
+    return y;
+  };
+  const auto internal = [&](const VectorXd& x) {
+    b->step.target = x;  // no inertia force
+    return system.gradient(b->step, x);
+  };
+  const double scale = 5.9e6 * 0.01;  // EA times the spacing [N]
+  CHECK(internal(moved(b->state.x)).cwiseAbs().maxCoeff() < 1e-12 * scale);
+
+  const VectorXd x = shaken(*b, 2e-4);
+  const VectorXd g = internal(x), turned = internal(moved(x));
+  for (int i = 0; i < b->scene.blank.nodes(); ++i)
+    CHECK((turned.segment<3>(3 * i) - r * g.segment<3>(3 * i)).norm() < 1e-12 * scale);
+  const auto stored = [&](const VectorXd& y) {
+    b->step.target = y;
+    return system.potential(b->step, y).total();
+  };
+  CHECK(stored(moved(x)) == Approx(stored(x)).epsilon(1e-11));
+}
+
+TEST_CASE("V2: uniform stretch and shear leave no residual inside the blank", "[macroscale][system][patch]") {
+  const auto b = bench();
+  b->scene.tools.clear();
+  b->scene.stabilisation = 0.0;
+  b->state = initial_state(b->scene);
+  b->step.start = &b->state;
+  System system(b->scene);
+  Eigen::Matrix3d f;
+  f << 1.004, 0.35, 0, 0.02, 0.93, 0, 0.1, -0.05, 1;
+  VectorXd x = b->state.x;
+  for (int i = 0; i < b->scene.blank.nodes(); ++i) x.segment<3>(3 * i) = f * b->state.x.segment<3>(3 * i);
+  b->step.target = x;
+  const VectorXd g = system.gradient(b->step, x);
+  const double scale = g.cwiseAbs().maxCoeff();
+  REQUIRE(scale > 1.0);  // the outline carries the stress
+  // Two rows in: bending reaches the second neighbour.
+  const int i = 2;
+  for (int j = 1; j < b->scene.blank.nv; ++j) CHECK(g.segment<3>(3 * b->scene.blank.node(i, j)).norm() < 1e-10 * scale);
+}

@@ -1,0 +1,85 @@
+#include "pipeline/command_line.h"
+
+#include <catch2/catch.hpp>
+
+using namespace heddle::pipeline;
+
+namespace {
+
+/// What was called, and with what.
+struct Record {
+  std::string called;
+  RunOptions run;
+  CheckOptions check;
+};
+
+int call(const std::vector<std::string>& arguments, Record& record) {
+  const auto note = [&](const char* name) {
+    return [&record, name](const RunOptions& options) {
+      record.called = name;
+      record.run = options;
+      return 7;
+    };
+  };
+  return dispatch(arguments, {.run = note("run"),
+                              .weave = note("weave"),
+                              .friction = note("friction"),
+                              .check = [&](const CheckOptions& options) {
+                                record.called = "check";
+                                record.check = options;
+                                return 8;
+                              }});
+}
+
+}  // namespace
+
+TEST_CASE("run takes file, folder, threads and assignments in order", "[pipeline][command_line]") {
+  Record record;
+  CHECK(call({"run", "case.yaml", "-o", "out/x", "-j", "2", "--set", "blank.size=[320 mm, 320 mm]", "--set",
+              "weave.gap=1.5 mm", "--resume", "--force", "--quiet"},
+             record) == 7);
+  CHECK(record.called == "run");
+  CHECK(record.run.file == "case.yaml");
+  CHECK(record.run.output == "out/x");
+  CHECK(record.run.threads == 2);
+  CHECK(record.run.assignments ==
+        std::vector<std::string>{"blank.size=[320 mm, 320 mm]", "weave.gap=1.5 mm"});
+  CHECK(record.run.resume);
+  CHECK(record.run.force);
+  CHECK(record.run.quiet);
+}
+
+TEST_CASE("an assignment does not swallow the file after it", "[pipeline][command_line]") {
+  Record record;
+  CHECK(call({"run", "--set", "effects={tool_temperature_shift: {slope: 0 1/K}}", "case.yaml"}, record) == 7);
+  CHECK(record.run.file == "case.yaml");
+  CHECK(record.run.assignments ==
+        std::vector<std::string>{"effects={tool_temperature_shift: {slope: 0 1/K}}"});
+}
+
+TEST_CASE("each subcommand reaches its function", "[pipeline][command_line]") {
+  Record record;
+  CHECK(call({"weave", "a.yaml"}, record) == 7);
+  CHECK(record.called == "weave");
+  CHECK(call({"friction", "a.yaml"}, record) == 7);
+  CHECK(record.called == "friction");
+  CHECK(call({"check", "a.yaml"}, record) == 8);
+  CHECK(record.called == "check");
+  CHECK(record.check.file == "a.yaml");
+  CHECK(call({"check", "--reference"}, record) == 8);
+  CHECK(record.check.reference);
+}
+
+TEST_CASE("a faulty command line is bad input and calls nothing", "[pipeline][command_line]") {
+  Record record;
+  CHECK(call({}, record) == exit_bad_input);
+  CHECK(call({"run"}, record) == exit_bad_input);
+  CHECK(call({"check"}, record) == exit_bad_input);
+  CHECK(call({"fly", "a.yaml"}, record) == exit_bad_input);
+  CHECK(call({"run", "a.yaml", "--fast"}, record) == exit_bad_input);
+  CHECK(call({"run", "a.yaml", "-j", "0"}, record) == exit_bad_input);
+  CHECK(record.called.empty());
+  CHECK(call({"--version"}, record) == exit_done);
+  CHECK(call({"--help"}, record) == exit_done);
+  CHECK(record.called.empty());
+}
