@@ -9,7 +9,8 @@ endif()
 if(NOT OPENBLAS_LIBRARY)
   message(FATAL_ERROR "OpenBLAS not found. Install libopenblas-pthread-dev; the reference BLAS is too slow.")
 endif()
+find_library(GOMP_LIBRARY NAMES gomp libgomp.so.1)  # comes with CHOLMOD, which is built with OpenMP
 add_library(heddle_cholmod INTERFACE)
 target_include_directories(heddle_cholmod SYSTEM INTERFACE ${CHOLMOD_INCLUDE_DIR})
 # OpenBLAS first: it then serves every BLAS symbol CHOLMOD asks for.
-target_link_libraries(heddle_cholmod INTERFACE ${OPENBLAS_LIBRARY} ${CHOLMOD_LIBRARY})
+target_link_libraries(heddle_cholmod INTERFACE ${OPENBLAS_LIBRARY} ${CHOLMOD_LIBRARY} ${GOMP_LIBRARY})

@@ -12,6 +12,8 @@ extern "C" {
 void openblas_set_num_threads(int threads);
 char* openblas_get_config();
 char* openblas_get_corename();
+// From the OpenMP runtime that CHOLMOD brings along.
+void omp_set_max_active_levels(int levels);
 }
 
 namespace heddle {
@@ -20,6 +22,9 @@ struct SparseSolver::Implementation {
   explicit Implementation(SymmetricPattern p) : pattern(std::move(p)), values(pattern.row.size(), 0.0) {
     // One thread a factorisation: a second BLAS thread gains nothing below 50 k nodes and costs reproducibility.
     openblas_set_num_threads(1);
+    // CHOLMOD asks for four OpenMP threads in loops too short for them; their spinning costs a third of a
+    // factorisation on two cores that TBB already uses. No active level = they run in the calling thread.
+    omp_set_max_active_levels(0);
     cholmod_start(&common);
     common.supernodal = CHOLMOD_SUPERNODAL;
     common.final_ll = 1;

@@ -46,8 +46,8 @@ double spread(const std::vector<double>& values) {
 class Fit {
  public:
   Fit(const Model& start, std::span<const FrictionTestRow> rows, const FrictionRig& rig,
-      const AreaFunction& area, bool with_area_exponent)
-      : model_(start), rows_(rows), with_area_exponent_(with_area_exponent) {
+      const AreaFunction& area, bool hold_slope, bool with_area_exponent)
+      : model_(start), rows_(rows), hold_slope_(hold_slope), with_area_exponent_(with_area_exponent) {
     model_.box = {};  // the rows are inside by definition
     for (const FrictionTestRow& row : rows) contexts_.push_back(contact_of(row, rig, area));
     nominal_contexts_ = contexts_;
@@ -95,7 +95,7 @@ class Fit {
     const bool tool_temperature_varies = spread(tool_temperature) > 1e-6;
     for (const Parameter& p : parameters_of(model_)) {
       const bool told = (!p.acts_through_hersey || hersey_varies_) &&
-                        (!p.acts_through_tool_temperature || tool_temperature_varies);
+                        (!p.acts_through_tool_temperature || (tool_temperature_varies && !hold_slope_));
       parameters_.push_back({.key = p.key, .unit = p.unit, .value = p.value, .fitted = told});
     }
     if (with_area_exponent_) parameters_.push_back({.key = "area_exponent", .unit = "", .value = 0.0});
@@ -188,6 +188,7 @@ class Fit {
   std::vector<Context> contexts_, nominal_contexts_;
   std::vector<FittedParameter> parameters_;
   std::vector<std::size_t> free_;  ///< indices of the fitted parameters
+  bool hold_slope_;
   bool with_area_exponent_;
   bool hersey_varies_ = false;
 };
@@ -230,11 +231,11 @@ FrictionRig with_plate_area(FrictionRig rig, double area) {
 }  // namespace
 
 Calibration calibrate(const Model& start, std::span<const FrictionTestRow> rows, const FrictionRig& rig,
-                      const AreaFunction& area, const LeastSquaresOptions& options) {
+                      const AreaFunction& area, const CalibrationOptions& options) {
   demand_sound_input(start, rows, rig);
-  Fit fit(start, rows, rig, area, false);
+  Fit fit(start, rows, rig, area, options.hold_tool_temperature_slope, false);
   Calibration result;
-  result.summary = fit.solve(options).summary;
+  result.summary = fit.solve(options.search).summary;
   result.model = fit.model();
   result.model.box = box_of(run_friction_tests(result.model, rows, rig, area));
   result.rows = run_friction_tests(result.model, rows, rig, area);
@@ -245,17 +246,18 @@ Calibration calibrate(const Model& start, std::span<const FrictionTestRow> rows,
 }
 
 CalibrationBand calibrate_band(const Model& start, std::span<const FrictionTestRow> rows,
-                               const FrictionRig& rig, const AreaFunction& area) {
-  return {.low = calibrate(start, rows, with_plate_area(rig, rig.plate_area_band[0]), area),
-          .assumed = calibrate(start, rows, rig, area),
-          .high = calibrate(start, rows, with_plate_area(rig, rig.plate_area_band[1]), area)};
+                               const FrictionRig& rig, const AreaFunction& area,
+                               const CalibrationOptions& options) {
+  return {.low = calibrate(start, rows, with_plate_area(rig, rig.plate_area_band[0]), area, options),
+          .assumed = calibrate(start, rows, rig, area, options),
+          .high = calibrate(start, rows, with_plate_area(rig, rig.plate_area_band[1]), area, options)};
 }
 
 AreaExponent area_exponent_that_fits(const PowerLawFilm& film, const Effects& effects,
                                      std::span<const FrictionTestRow> rows, const FrictionRig& rig) {
   const Model start{.law = HerseyPower{}, .film = film, .effects = effects, .box = {}};
   demand_sound_input(start, rows, rig);
-  Fit fit(start, rows, rig, {}, true);
+  Fit fit(start, rows, rig, {}, false, true);
   const LeastSquaresResult solution = fit.solve({});
   return {.value = fit.parameters().back().value,
           .standard_error = fit.parameters().back().standard_error,

@@ -34,10 +34,16 @@ struct Calibration {
   bool saturated() const { return degrees_of_freedom == 0; }
 };
 
+struct CalibrationOptions {
+  bool hold_tool_temperature_slope = false;  ///< keep the slope that the model came with
+  LeastSquaresOptions search = {};
+};
+
 /// Least squares on the relative force error (F_model - F) / F.
 ///
 /// The form of the law is the one `start` holds: Coulomb (mu), HerseyPower (C, s) or HerseyLinear (a, b, with
-/// Hs0 the Hersey number of the first row). The tool temperature slope is fitted where the effect is present.
+/// Hs0 the Hersey number of the first row). The tool temperature slope is fitted where the effect is present,
+/// unless the options hold it.
 /// The film is taken as it is: n comes from polypropylene rheology, not from friction tests, whose few rows
 /// cannot tell n from s.
 /// @param rows  each with a measured force
@@ -46,14 +52,15 @@ struct Calibration {
 /// parameters, or if
 ///                     the rows cannot separate the parameters
 Calibration calibrate(const Model& start, std::span<const FrictionTestRow> rows, const FrictionRig& rig,
-                      const AreaFunction& area = {}, const LeastSquaresOptions& options = {});
+                      const AreaFunction& area = {}, const CalibrationOptions& options = {});
 
 /// The same at both ends of the plate area band: how far an unknown plate area moves the law elsewhere.
 struct CalibrationBand {
   Calibration low, assumed, high;
 };
 CalibrationBand calibrate_band(const Model& start, std::span<const FrictionTestRow> rows,
-                               const FrictionRig& rig, const AreaFunction& area = {});
+                               const FrictionRig& rig, const AreaFunction& area = {},
+                               const CalibrationOptions& options = {});
 
 /// Pressure exponent a of a contact area phi ~ p^a that friction tests ask for.
 struct AreaExponent {

@@ -7,6 +7,7 @@
 #include <tbb/parallel_for.h>
 
 #include "core/problem.h"
+#include "friction/hersey.h"
 
 namespace heddle::macroscale {
 
@@ -21,9 +22,10 @@ friction::Context context_of(const Scene& scene, double pressure, double shear_a
   context.fabric_temperature = scene.blank_temperature;
   context.tool_temperature = scene.tool_temperature;
   if (scene.contact_pressure == ContactPressure::real && !scene.fabric->contact.log_fraction.empty()) {
-    const auto area = scene.fabric->contact.evaluate(pressure, shear_angle);
+    const auto floored = friction::floored(pressure);
+    const auto area = scene.fabric->contact.evaluate(floored.value, shear_angle);
     context.area_fraction = area.fraction;
-    context.area_slope = area.slope;
+    context.area_slope = area.slope * floored.slope;
   }
   return context;
 }

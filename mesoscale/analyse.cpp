@@ -10,11 +10,14 @@ namespace {
 
 // Constants that no source of ours measures for this fabric.
 std::vector<std::string> priors() {
-  return {"forming.compaction_modulus", "forming.compaction_exponent", "forming.tow_friction",
-          "forming.reference_tension",  "forming.in_tow_shear_share",  "forming.bonding",
-          "forming.compression_ratio",  "weave.fibre_diameter",        "resin.consistency",
-          "resin.power_index",          "resin.activation_energy",     "compaction.packing",
-          "compaction.packing_modulus", "tension.straightening",       "shear.ramp_angle"};
+  return {"forming.compaction_modulus", "forming.compaction_exponent",
+          "forming.tow_friction",       "forming.reference_tension",
+          "forming.in_tow_shear_share", "forming.bonding",
+          "forming.compression_ratio",  "weave.fibre_diameter",
+          "resin.consistency",          "resin.power_index",
+          "resin.activation_energy",    "compaction.packing",
+          "compaction.packing_modulus", "tension.straightening",
+          "geometry.width_scatter",     "shear.ramp_angle"};
 }
 
 CellSummary summarise(const FormingModels& models, const MassBalance& mass, const CompactionLaw& law) {

@@ -61,12 +61,24 @@ double gap_closure_angle(const CrossingGeometry& unsheared) {
   return std::acos(std::min(unsheared.section.width / unsheared.pitch, 1.0));
 }
 
+OpenWidth oblique_width(const CrossingGeometry& unsheared, double shear_angle) {
+  const double pitch = unsheared.pitch, free = unsheared.section.width / pitch;
+  const double x = free / std::cos(shear_angle);
+  const double dx_dg = x * std::tan(shear_angle);
+  // A gapless weave is in contact from the start, so its scatter would change the as-woven tow: half the gap
+  // at most.
+  const double scatter = std::min(width_scatter, 0.5 * (1.0 - free));
+  if (x <= 1.0 - scatter) return {pitch * x, pitch * dx_dg};
+  if (x >= 1.0 + scatter) return {pitch, 0.0};
+  const double into = x - 1.0 + scatter;
+  return {pitch * (x - into * into / (4.0 * scatter)), pitch * dx_dg * (1.0 - into / (2.0 * scatter))};
+}
+
 CrossingGeometry sheared(const CrossingGeometry& unsheared, double shear_angle) {
-  const double shrink = std::cos(shear_angle);
-  const double oblique = unsheared.section.width / shrink;
-  const double width = std::min(oblique, unsheared.pitch);
+  const double width = oblique_width(unsheared, shear_angle).width;
+  const double free_width = unsheared.section.width / std::cos(shear_angle);
   CrossingGeometry crossing = crossing_of(unsheared.pitch, width, unsheared.section.thickness,
-                                          unsheared.fibre_fraction * oblique / width);
+                                          unsheared.fibre_fraction * free_width / width);
   crossing.shear_angle = shear_angle;
   return crossing;
 }

@@ -18,7 +18,7 @@ namespace heddle::mesoscale {
 struct CrossingGeometry {
   double shear_angle = 0.0;     ///< g [rad]
   double pitch = 0.0;           ///< p [m]
-  LensSection section{};        ///< width in the parameter plane, w_o = min(w / cos g, p)
+  LensSection section{};        ///< width in the parameter plane, w_o = min(w / cos g, p), rounded
   ArcPath path{};               ///< where a tow changes sides; h = t
   double fibre_fraction = 0.0;  ///< V0, glass in the stress-free tow [-]
 };
@@ -41,7 +41,19 @@ FabricGeometry fabric_geometry(const WeaveSpec& weave, CellState state);
 /// Trellis angle at which neighbouring tows touch, acos(w / p) [rad].
 double gap_closure_angle(const CrossingGeometry& unsheared);
 
-/// The crossing at trellis angle g (sign ignored), |g| < 90 deg. Until the gap closes, the tow turns
+/// Tow widths scatter about their mean, so gaps close one after another: min(w / cos g, p) is rounded by a
+/// parabola while w / cos g is within this share of the pitch. A prior; it keeps forces continuous at gap
+/// closure.
+inline constexpr double width_scatter = 0.05;
+
+/// Width of a tow in the parameter plane, min(w / cos g, p) rounded, and its slope.
+struct OpenWidth {
+  double width;  ///< w_o [m]
+  double slope;  ///< d w_o / dg [m/rad]
+};
+OpenWidth oblique_width(const CrossingGeometry& unsheared, double shear_angle);
+
+/// The crossing at trellis angle g (sign ignored), |g| < 90 deg. Until the gaps close, the tow turns
 /// unchanged; from there its true width is p cos g at constant thickness, and V0 rises by cos g* / cos g
 /// (drained: resin that has no room flows into the pores between the tows).
 CrossingGeometry sheared(const CrossingGeometry& unsheared, double shear_angle);

@@ -23,8 +23,8 @@ struct CompactionLaw {
   Value evaluate(double fibre_fraction) const;
 };
 
-/// Tables end where stress-free tows would be packed to this: past V_p, where the law is steep, and short of what
-/// parallel fibres can reach (0.907).
+/// Tables end where stress-free tows would be packed to this: past V_p, where the law is steep, and short of
+/// what parallel fibres can reach (0.907).
 inline constexpr double packed_fibre_fraction = 0.82;
 
 /// A tow of thickness t and fibre fraction V0 squeezed by delta, with the stress-free part taken off:

@@ -20,6 +20,15 @@ double mean_interlacing(const TensionModel& model) {
   return 0.5 * (model.interlacing[0] + model.interlacing[1]);
 }
 
+// The unsheared length law with the contact radius and edge of the sheared crossing.
+LengthLaw length_law(const ShearModel& model, double shear_angle) {
+  const CrossingGeometry crossing = sheared(model.fabric.crossing, shear_angle);
+  LengthLaw law = model.tension.length;
+  law.contact_radius = crossing.section.radius() + 0.5 * crossing.section.thickness;
+  law.edge = std::min(0.5 * crossing.section.width, 0.475 * crossing.pitch);
+  return law;
+}
+
 struct TowState {
   double energy;         ///< per pitch of tow [J]
   double force;          ///< N [N]
@@ -48,23 +57,42 @@ double strain_under(const TensionModel& model, const LengthLaw& law, double tens
   return bracketed_root(low, at_low, high, at_high, 1e-12 * tension, excess);
 }
 
-double potential_of(const ShearModel& model, const CrossoverContact& contact, double strain, double height) {
-  const TowState tow = tow_state(model.tension, model.tension.length, strain, height);
+double potential_of(const ShearModel& model, const LengthLaw& length, const CrossoverContact& contact,
+                    double strain, double height) {
+  const TowState tow = tow_state(model.tension, length, strain, height);
   const double off = height - model.tension.rest_height;
   const double stored =
       2.0 * tow.energy + model.tension.crimp_stiffness * off * off + contact.evaluate(-2.0 * off).energy;
   return stored / (model.tension.pitch * model.tension.pitch) - 2.0 * model.reference_tension * strain;
 }
 
+// How much narrower than free a tow has become, and how fast it does so.
+struct Narrowing {
+  double by;     ///< w - w_o cos g [m]
+  double slope;  ///< its slope in g [m/rad]
+};
+
+Narrowing narrowing(const ShearModel& model, double shear_angle) {
+  const OpenWidth open = oblique_width(model.fabric.crossing, shear_angle);
+  const double c = std::cos(shear_angle), s = std::sin(shear_angle);
+  return {model.fabric.crossing.section.width - open.width * c, open.width * s - open.slope * c};
+}
+
+// The tow seen from its side: squeezed across its width.
+TowSqueeze side_squeeze(const ShearModel& model) {
+  return {model.law, model.fabric.crossing.section.width, model.fabric.crossing.fibre_fraction};
+}
+
 }  // namespace
 
 double ShearModel::potential(double shear_angle, double strain, double height) const {
-  return potential_of(*this, CrossoverContact(fabric.crossing, shear_angle, law), strain, height);
+  return potential_of(*this, length_law(*this, shear_angle),
+                      CrossoverContact(fabric.crossing, shear_angle, law), strain, height);
 }
 
 LoadedCrossing ShearModel::loaded(double shear_angle) const {
   const CrossoverContact contact(fabric.crossing, shear_angle, law);
-  const LengthLaw length = tension.length;
+  const LengthLaw length = length_law(*this, shear_angle);
   const double rest = tension.rest_height;
   // Vertical balance N sin th = V/2 per tow, with the tow's bending: increases with h.
   const auto lift = [&](double height) {
@@ -84,29 +112,25 @@ LoadedCrossing ShearModel::loaded(double shear_angle) const {
   const double approach = 2.0 * (rest - state.height);
   state.crossover_force = contact.force(approach);
   state.friction_arm = contact.arm(approach);
-  state.potential = potential_of(*this, contact, state.strain, state.height);
+  state.potential = potential_of(*this, length, contact, state.strain, state.height);
   return state;
 }
 
 double ShearModel::lateral_energy(double shear_angle) const {
-  const double closed = fabric.crossing.section.width, now = fabric.crossing.pitch * std::cos(shear_angle);
-  if (now >= closed) return 0.0;
-  const TowSqueeze squeeze(law, closed, fabric.crossing.fibre_fraction);
   return 2.0 * fabric.crossing.section.thickness / fabric.crossing.pitch *
-         squeeze.evaluate(closed - now).energy;
+         side_squeeze(*this).evaluate(narrowing(*this, shear_angle).by).energy;
 }
 
 ShearFlow ShearModel::flow(double shear_angle) const {
-  const double pitch = fabric.crossing.pitch, thickness = fabric.crossing.section.thickness;
+  const double pitch = fabric.crossing.pitch;
   const LoadedCrossing state = loaded(shear_angle);
   ShearFlow flow;
   const double ramp = shear_angle / std::hypot(shear_angle, ramp_angle);
   flow.dry = ramp * tow_friction * state.crossover_force * state.friction_arm / (pitch * pitch);
 
-  const double closed = fabric.crossing.section.width;
-  const TowSqueeze squeeze(law, closed, fabric.crossing.fibre_fraction);
+  const Narrowing side = narrowing(*this, shear_angle);
   flow.lateral =
-      2.0 * thickness * std::sin(shear_angle) * squeeze.stress(closed - pitch * std::cos(shear_angle));
+      2.0 * fabric.crossing.section.thickness / pitch * side_squeeze(*this).stress(side.by) * side.slope;
 
   // At the minimum only the geometry changes with g (envelope theorem), so strain and height are held.
   constexpr double step = 1e-5;  // [rad]: truncation 1e-10, rounding 1e-11 of the potential
@@ -133,6 +157,10 @@ Curve tabulate(const ShearModel& model, const SineGrid& grid) {
     const double angle = std::asin(sine[k]);
     stress[k] = model.flow(angle).total() / std::cos(angle);
   });
+  // Where tows of a loose weave stop widening, the crimp term falls: a snap of the even geometry that a
+  // fabric with tows of many widths does not show. The largest stress so far is held, so that Psi stays
+  // convex.
+  for (std::size_t k = 1; k < n; ++k) stress[k] = std::max(stress[k], stress[k - 1]);
   return Curve(std::move(sine), std::move(stress));
 }
 

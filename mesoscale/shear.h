@@ -26,7 +26,10 @@ struct ShearFlow {
 /// Shear resistance of the fabric at the reference tension n_ref in both directions.
 ///
 ///     T_dry = ramp(g) mu_t V a / p^2,     ramp = g / sqrt(g^2 + g_0^2)
-///     T_lat = 2 t sin g [sigma(V0 cos g* / cos g) - sigma(V0)]  for g > g*, the work of closing the width p
+///     T_lat = (2 t / p) [sigma(V0 w / W) - sigma(V0)] (-dW/dg),  W = w_o cos g: the work of narrowing two
+///     tows;
+///             once the gap is closed W = p cos g and T_lat = 2 t sin g [sigma(V0 cos g* / cos g) -
+///             sigma(V0)]
 ///     cos g T_tension = dE/dg,   E(g) = min_{e, h} [F(e, h; g) / p^2 - 2 n_ref e]
 ///
 /// V and a (arm of the pressure) come from the crossing under n_ref at that angle; the radius of the path is
@@ -56,6 +59,7 @@ struct SineGrid {
 };
 /// Even grid up to the angle at which the tows, squeezed sideways, would be packed to V = 0.82, at most 0.98.
 SineGrid sine_grid(const FabricGeometry& fabric);
+/// Never falls: see the comment on snapping in the source. A plain weave of Table 1 needs no holding.
 Curve tabulate(const ShearModel& model, const SineGrid& grid);
 
 /// Smallest angle above 20 deg at which the tangent dT/dg is `multiple` times its value at 20 deg [rad].

@@ -81,6 +81,22 @@ TensionModel::State state_of(const TensionModel& model, const std::array<double,
   return state;
 }
 
+// Values at the inner points of the cubic B-spline that has the samples as its coefficients (1 4 1 each way).
+std::vector<double> b_spline_values(const std::vector<double>& sample, std::size_t n) {
+  const std::size_t wide = n + 2;
+  const auto along_row = [&](std::size_t k) {
+    return (sample[k - 1] + 4.0 * sample[k] + sample[k + 1]) / 6.0;
+  };
+  std::vector<double> value(n * n);
+  for (std::size_t i = 0; i < n; ++i)
+    for (std::size_t j = 0; j < n; ++j) {
+      const std::size_t middle = (i + 1) * wide + j + 1;
+      value[i * n + j] =
+          (along_row(middle - wide) + 4.0 * along_row(middle) + along_row(middle + wide)) / 6.0;
+    }
+  return value;
+}
+
 }  // namespace
 
 TowStretch::Value TowStretch::evaluate(double strain) const {
@@ -163,19 +179,19 @@ TensionModel tension_model(const FabricGeometry& fabric, const CompactionLaw& la
 
 Surface tabulate(const TensionModel& model, const StrainGrid& grid) {
   const double step = (grid.high - grid.low) / (grid.points - 1);
-  const auto n = static_cast<std::size_t>(grid.points);
-  std::vector<double> energy(n * n);
-  tbb::parallel_for(std::size_t{0}, n, [&](std::size_t i) {
+  const auto n = static_cast<std::size_t>(grid.points), wide = n + 2;  // one more all round, for the weights
+  const auto strain_at = [&](std::size_t i) { return grid.low + step * (static_cast<double>(i) - 1.0); };
+  std::vector<double> energy(wide * wide);
+  tbb::parallel_for(std::size_t{0}, wide, [&](std::size_t i) {
     // Each row starts afresh, so the bytes do not depend on which thread took it.
     std::array<double, 2> height{model.rest_height, model.rest_height};
-    for (std::size_t j = 0; j < n; ++j) {
-      const TensionModel::State state = model.relax(
-          {grid.low + step * static_cast<double>(i), grid.low + step * static_cast<double>(j)}, height);
-      energy[i * n + j] = state.energy;
+    for (std::size_t j = 0; j < wide; ++j) {
+      const TensionModel::State state = model.relax({strain_at(i), strain_at(j)}, height);
+      energy[i * wide + j] = state.energy;
       height = state.height;
     }
   });
-  return Surface(grid.low, step, grid.points, grid.low, step, grid.points, std::move(energy));
+  return Surface(grid.low, step, grid.points, grid.low, step, grid.points, b_spline_values(energy, n));
 }
 
 }  // namespace heddle::mesoscale

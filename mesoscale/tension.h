@@ -67,10 +67,15 @@ struct TensionOptions {
 TensionModel tension_model(const FabricGeometry& fabric, const CompactionLaw& law,
                            const TensionOptions& options);
 
-/// w on an even grid of strains. The spline's slopes are the tensions.
+/// w on an even grid of strains; the spline's slopes are the tensions.
+///
+/// A spline THROUGH the samples has the curvature w'' - h^2/12 w'''', which is negative where stiffness sets
+/// in. So the spline takes the samples as its B-spline coefficients instead: that adds h^2/6 times the
+/// curvature of w, at most 1e-4 of the largest tension, and keeps it convex.
 struct StrainGrid {
-  double low = -0.01, high = 0.02;  ///< [-]
-  int points = 241;  ///< each way: a step of 1.25e-4, an eighth of eps_s, keeps the spline convex
+  double low = -0.02, high = 0.03;  ///< [-]
+  int points = 301;                 ///< each way: a step of 1.67e-4, a sixth of eps_s
+};
 Surface tabulate(const TensionModel& model, const StrainGrid& grid = {});
 
 }  // namespace heddle::mesoscale

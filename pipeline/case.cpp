@@ -222,6 +222,15 @@ void append(Problems& problems, Problems more) {
   problems.insert(problems.end(), std::make_move_iterator(more.begin()), std::make_move_iterator(more.end()));
 }
 
+/// Without those about a key already named: two rooms check the melt that they share.
+void append_new(Problems& problems, const Problems& more) {
+  const Problems known = problems;
+  std::copy_if(more.begin(), more.end(), std::back_inserter(problems), [&](const Problem& problem) {
+    return std::none_of(known.begin(), known.end(),
+                        [&](const Problem& other) { return other.key == problem.key; });
+  });
+}
+
 /// A model whose constants are still to be fitted has only its film and effects to check.
 Problems check_friction_model(const FrictionSpec& spec) {
   friction::Model model = spec.model;
@@ -301,7 +310,7 @@ Problems check_between_keys(const Case& a_case, const Problems& known) {
     append(problems, check_constants_beside_data(a_case.settings));
     append(problems, check_fitted_slope(a_case.settings));
     append(problems, check_rig(*a_case.friction, a_case.settings));
-    append(problems, check_friction_model(*a_case.friction));
+    append_new(problems, check_friction_model(*a_case.friction));
     append(problems, check_table(a_case.friction->calibration_data, true));
   }
   if (a_case.friction_test && a_case.friction_test->data != a_case.friction->calibration_data) {

@@ -279,7 +279,8 @@ std::string report_html(const ReportInput& input) {
   out += section("Contact and friction", friction_section(input));
   out += section("What it rests on", grounds(input));
   out +=
-      "<footer>Written by heddle. Numbers behind the charts: history.csv, summary.json, fabric.json in the "
+      "<footer>Written by heddle. Numbers behind the charts: summary.json, macroscale/history.csv and "
+      "mesoscale/fabric.json in the "
       "same folder. "
       "Angles in degrees, forces in newtons.</footer>\n";
   return out + "</main>\n</body>\n</html>\n";

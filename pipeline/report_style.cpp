@@ -52,10 +52,14 @@ th:last-child,td:last-child{padding-right:0}
 ul.notes{margin:0;padding-left:20px;max-width:72ch}
 ul.notes li{margin-bottom:8px}
 footer{margin-top:72px;padding-top:18px;border-top:1px solid var(--rule);color:var(--faint);font-size:13px}
-@media(max-width:760px){main{padding:32px 18px 56px}.pair,.columns{grid-template-columns:1fr}h1{font-size:30px}
+@media screen and (max-width:760px){main{padding:32px 18px 56px}.pair,.columns{grid-template-columns:1fr}h1{font-size:30px}
 .verdicts li{grid-template-columns:1fr;gap:0}h2{margin-top:52px}}
-@media print{@page{size:A4;margin:16mm}main{max-width:none;padding:0}body{font-size:11pt}h1{font-size:24pt}
-h2{margin-top:26pt;break-after:avoid}figure,tr,.verdicts li{break-inside:avoid}.results dd{font-size:18pt}
+@media print{@page{size:A4;margin:16mm}main{max-width:none;padding:0}body{font-size:9.5pt}h1{font-size:22pt}
+h2{margin-top:24pt;font-size:15pt;break-after:avoid}table,figcaption,.results dt,.verdicts .tone{font-size:8.5pt}
+.verdicts li{grid-template-columns:70pt 1fr;padding:2.5pt 0}.lead{font-size:11pt}header{margin-bottom:18pt}
+.results{grid-template-columns:repeat(4,1fr);margin-bottom:18pt;padding:10pt 0;gap:12pt}
+figure{margin-bottom:14pt;overflow:visible}figure svg{min-width:0}
+th,td{padding:3pt 8pt 3pt 0}.pair{gap:14pt}figure,tr,.verdicts li{break-inside:avoid}.results dd{font-size:18pt}
 .picture path{print-color-adjust:exact;-webkit-print-color-adjust:exact}}
 )";
   return std::string(page) + picture_style();

@@ -1,5 +1,7 @@
 #include "pipeline/outputs.h"
 
+#include <unistd.h>
+
 #include <catch2/catch.hpp>
 #include <cmath>
 #include <cstring>
@@ -62,9 +64,9 @@ bool same_bits(const mesoscale::FabricProperties& a, const mesoscale::FabricProp
          same_bits(a.provenance.grid_error, b.provenance.grid_error);
 }
 
-/// A folder of this test's own, removed at its end.
+/// A folder of this process's own, removed at the end: several tests may run at once.
 struct Folder {
-  fs::path path = fs::temp_directory_path() / fs::path("heddle_outputs_test");
+  fs::path path = fs::temp_directory_path() / ("heddle_outputs_test_" + std::to_string(::getpid()));
   Folder() { fs::remove_all(path); }
   ~Folder() { fs::remove_all(path); }
 };

@@ -1,5 +1,7 @@
 #include "pipeline/report.h"
 
+#include <unistd.h>
+
 #include <algorithm>
 #include <catch2/catch.hpp>
 #include <cstdlib>
@@ -216,9 +218,10 @@ TEST_CASE("a fine blank is drawn with as many quads as a page can carry", "[repo
 TEST_CASE("the sample report can be looked at", "[report]") {
   // Writes the page where the developer asks for it; always checks that it reaches the disk whole.
   const char* wanted = std::getenv("HEDDLE_SAMPLE_REPORT");
-  const std::filesystem::path path =
-      wanted ? std::filesystem::path(wanted)
-             : std::filesystem::temp_directory_path() / "heddle_sample_report" / "report.html";
+  const std::filesystem::path path = wanted ? std::filesystem::path(wanted)
+                                            : std::filesystem::temp_directory_path() /
+                                                  ("heddle_sample_report_" + std::to_string(::getpid())) /
+                                                  "report.html";
   const std::string html = report_html(sample::report());
   write_file(path, html);
   CHECK(read_file(path) == html);

@@ -1,0 +1,151 @@
+#include "friction/test_design.h"
+
+#include <charconv>
+#include <fstream>
+#include <functional>
+#include <map>
+#include <numbers>
+#include <sstream>
+
+#include <fmt/format.h>
+
+namespace heddle::friction {
+
+namespace {
+
+struct Factor {
+  const char* unit;
+  std::vector<double> TestDesign::*levels;
+  double (*to_si)(double);
+};
+
+const std::map<std::string, Factor>& factors() {
+  static const std::map<std::string, Factor> all = {
+      {"velocity", {"mm/s", &TestDesign::velocity, [](double v) { return 1e-3 * v; }}},
+      {"normal_force", {"N", &TestDesign::normal_force, [](double v) { return v; }}},
+      {"tool_temperature", {"C", &TestDesign::tool_temperature, [](double v) { return v + 273.15; }}},
+      {"fabric_temperature", {"C", &TestDesign::fabric_temperature, [](double v) { return v + 273.15; }}},
+      {"orientation", {"deg", &TestDesign::orientation, [](double v) { return v * std::numbers::pi / 180.0; }}}};
+  return all;
+}
+
+std::vector<std::string> split(const std::string& line, char separator) {
+  std::vector<std::string> cells;
+  std::stringstream stream(line);
+  for (std::string cell; std::getline(stream, cell, separator);) cells.push_back(cell);
+  return cells;
+}
+
+class Reader {
+ public:
+  Reader(const std::string& text, std::string file) : text_(text), file_(std::move(file)) {}
+
+  TestDesign read() {
+    std::stringstream stream(text_);
+    std::string line;
+    while (std::getline(stream, line)) {
+      ++line_;
+      if (line.empty() || line[0] == '#' || line_ == 1) continue;
+      read_factor(line);
+    }
+    for (const auto& [name, factor] : factors())
+      if ((design_.*factor.levels).empty()) report("missing", name, "", "must have a line", "Give at least its baseline.");
+    if (!problems_.empty()) throw InputError(std::move(problems_));
+    return std::move(design_);
+  }
+
+ private:
+  void read_factor(const std::string& line) {
+    const auto cells = split(line, ',');
+    const auto found = cells.empty() ? factors().end() : factors().find(cells[0]);
+    if (found == factors().end() || cells.size() < 3) {
+      report("line", cells.empty() ? "" : cells[0], line, "must read parameter,unit,baseline,additional with a known parameter",
+             "Known are velocity, normal_force, tool_temperature, fabric_temperature and orientation.");
+      return;
+    }
+    const Factor& factor = found->second;
+    if (cells[1] != factor.unit) report("unit", cells[0], cells[1], fmt::format("must be in {}", factor.unit), "Convert the levels.");
+    add_level(factor, cells[0], cells[2]);
+    if (cells.size() > 3)
+      for (const std::string& level : split(cells[3], ';')) add_level(factor, cells[0], level);
+  }
+
+  void add_level(const Factor& factor, const std::string& name, const std::string& text) {
+    double value = 0.0;
+    const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
+    if (error != std::errc() || end != text.data() + text.size())
+      report("number", name, text, "must be a number", "Separate levels by ; without spaces.");
+    else
+      (design_.*factor.levels).push_back(factor.to_si(value));
+  }
+
+  void report(const std::string& id, const std::string& key, const std::string& value, const std::string& rule, const std::string& way_out) {
+    problems_.push_back({"friction.design." + id, key, value, rule, way_out, file_, line_});
+  }
+
+  const std::string& text_;
+  std::string file_;
+  int line_ = 0;
+  TestDesign design_;
+  Problems problems_;
+};
+
+FrictionTestRow baseline(const TestDesign& design) {
+  FrictionTestRow row;
+  row.name = "baseline";
+  row.velocity = design.velocity.front();
+  row.normal_force = design.normal_force.front();
+  row.tool_temperature = design.tool_temperature.front();
+  row.fabric_temperature = design.fabric_temperature.front();
+  row.orientation = design.orientation.front();
+  return row;
+}
+
+}  // namespace
+
+std::vector<FrictionTestRow> one_at_a_time(const TestDesign& design) {
+  std::vector<FrictionTestRow> rows = {baseline(design)};
+  const auto vary = [&](const std::vector<double>& levels, double FrictionTestRow::*field, const std::function<std::string(double)>& name) {
+    for (std::size_t k = 1; k < levels.size(); ++k) {
+      FrictionTestRow row = baseline(design);
+      row.*field = levels[k];
+      row.name = name(levels[k]);
+      rows.push_back(row);
+    }
+  };
+  vary(design.velocity, &FrictionTestRow::velocity, [](double v) { return fmt::format("velocity {:.4g} mm/s", 1e3 * v); });
+  vary(design.normal_force, &FrictionTestRow::normal_force, [](double v) { return fmt::format("normal force {:.4g} N", v); });
+  vary(design.tool_temperature, &FrictionTestRow::tool_temperature, [](double v) { return fmt::format("tool {:.4g} degC", v - 273.15); });
+  vary(design.fabric_temperature, &FrictionTestRow::fabric_temperature, [](double v) { return fmt::format("fabric {:.4g} degC", v - 273.15); });
+  vary(design.orientation, &FrictionTestRow::orientation, [](double v) { return fmt::format("orientation {:.4g} deg", v * 180.0 / std::numbers::pi); });
+  return rows;
+}
+
+std::vector<FrictionTestRow> all_combinations(const TestDesign& design) {
+  std::vector<FrictionTestRow> rows;
+  for (double velocity : design.velocity)
+    for (double force : design.normal_force)
+      for (double tool : design.tool_temperature)
+        for (double fabric : design.fabric_temperature) {
+          FrictionTestRow row = baseline(design);
+          row.velocity = velocity;
+          row.normal_force = force;
+          row.tool_temperature = tool;
+          row.fabric_temperature = fabric;
+          rows.push_back(row);
+        }
+  return rows;
+}
+
+TestDesign parse_test_design(const std::string& text, const std::string& file) { return Reader(text, file).read(); }
+
+TestDesign read_test_design(const std::string& path) {
+  std::ifstream stream(path);
+  if (!stream)
+    throw InputError({{"friction.design.file", "friction_test.design", path, "must be a readable file", "Check the path; it is relative to the configuration."}});
+  std::stringstream text;
+  text << stream.rdbuf();
+  return parse_test_design(text.str(), path);
+}
+
+}  // namespace heddle::friction
