@@ -51,19 +51,22 @@ double evenly_spaced_inverse_step(const std::vector<double>& x) {
 
 Curve::Curve(std::vector<double> x, std::vector<double> y) : x_(std::move(x)), y_(std::move(y)) {
   if (x_.size() != y_.size() || x_.size() < 2)
-    throw std::invalid_argument(fmt::format("a curve needs two or more points; got {} x and {} y", x_.size(), y_.size()));
+    throw std::invalid_argument(
+        fmt::format("a curve needs two or more points; got {} x and {} y", x_.size(), y_.size()));
   for (std::size_t i = 0; i < x_.size(); ++i) {
     if (!std::isfinite(x_[i]) || !std::isfinite(y_[i]))
       throw std::invalid_argument(fmt::format("curve point {} is not finite: ({}, {})", i, x_[i], y_[i]));
     if (i > 0 && !(x_[i] > x_[i - 1]))
-      throw std::invalid_argument(fmt::format("curve x must increase; point {} has {} after {}", i, x_[i], x_[i - 1]));
+      throw std::invalid_argument(
+          fmt::format("curve x must increase; point {} has {} after {}", i, x_[i], x_[i - 1]));
   }
   slope_ = monotone_slopes(x_, y_);
   inverse_step_ = evenly_spaced_inverse_step(x_);
   integral_.assign(x_.size(), 0.0);
   for (std::size_t i = 0; i + 1 < x_.size(); ++i) {
     const double h = x_[i + 1] - x_[i];
-    integral_[i + 1] = integral_[i] + h * (0.5 * (y_[i] + y_[i + 1]) + h * (slope_[i] - slope_[i + 1]) / 12.0);
+    integral_[i + 1] =
+        integral_[i] + h * (0.5 * (y_[i] + y_[i + 1]) + h * (slope_[i] - slope_[i + 1]) / 12.0);
   }
 }
 
@@ -109,7 +112,8 @@ double Curve::integral(double x) const {
   return integral_[i] + h * t * (y_[i] + t * (a / 2.0 + t * (b / 3.0 + t * c / 4.0)));
 }
 
-std::string fault_of_monotone_table(const std::vector<double>& x, const std::vector<double>& y, const std::string& what) {
+std::string fault_of_monotone_table(const std::vector<double>& x, const std::vector<double>& y,
+                                    const std::string& what) {
   if (x.size() != y.size() || x.size() < 2)
     return fmt::format("{} needs two or more points; got {} x and {} y", what, x.size(), y.size());
   for (std::size_t i = 0; i < x.size(); ++i) {

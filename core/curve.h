@@ -33,14 +33,17 @@ class Curve {
  private:
   std::size_t interval(double x) const;
   std::vector<double> x_, y_, slope_, integral_;
-  double inverse_step_ = 0.0;  ///< > 0 when the points are evenly spaced: then the interval is found without a search
+  double inverse_step_ =
+      0.0;  ///< > 0 when the points are evenly spaced: then the interval is found without a search
 };
 
 /// First fault of a table meant to be monotone, or "" if it has none. `what` names the table in the message.
-std::string fault_of_monotone_table(const std::vector<double>& x, const std::vector<double>& y, const std::string& what);
+std::string fault_of_monotone_table(const std::vector<double>& x, const std::vector<double>& y,
+                                    const std::string& what);
 
-/// Curves at several values of a second parameter (for instance the trellis shear angle), blended linearly between
-/// them and held beyond the first and last. Value and slope are in x; the parameter enters lagged quantities only.
+/// Curves at several values of a second parameter (for instance the trellis shear angle), blended linearly
+/// between them and held beyond the first and last. Value and slope are in x; the parameter enters lagged
+/// quantities only.
 class CurveFamily {
  public:
   CurveFamily() = default;

@@ -9,11 +9,11 @@ namespace heddle {
 /// One thing wrong with what the user gave: where, what, the rule, the way out.
 /// A free `check(const T&)` beside each specification returns these; the pipeline adds file and line.
 struct Problem {
-  std::string id;       ///< stable name of the rule, for instance "weave.gap.range"
-  std::string key;      ///< dotted path of the key, for instance "weave.gap"
-  std::string value;    ///< the value as written, or formatted with its unit; may be empty
-  std::string rule;     ///< "must satisfy 0 <= gap < 0.1 m"
-  std::string way_out;  ///< "Table 1 gives 0.75 mm; write 0.75 mm."
+  std::string id;         ///< stable name of the rule, for instance "weave.gap.range"
+  std::string key;        ///< dotted path of the key, for instance "weave.gap"
+  std::string value;      ///< the value as written, or formatted with its unit; may be empty
+  std::string rule;       ///< "must satisfy 0 <= gap < 0.1 m"
+  std::string way_out;    ///< "Table 1 gives 0.75 mm; write 0.75 mm."
   std::string file = {};  ///< filled in by the reader
   int line = 0;           ///< 1-based; 0 = not tied to a line
 };

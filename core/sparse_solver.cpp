@@ -20,7 +20,8 @@ namespace heddle {
 
 struct SparseSolver::Implementation {
   explicit Implementation(SymmetricPattern p) : pattern(std::move(p)), values(pattern.row.size(), 0.0) {
-    // One thread a factorisation: a second BLAS thread gains nothing below 50 k nodes and costs reproducibility.
+    // One thread a factorisation: a second BLAS thread gains nothing below 50 k nodes and costs
+    // reproducibility.
     openblas_set_num_threads(1);
     // CHOLMOD asks for four OpenMP threads in loops too short for them; their spinning costs a third of a
     // factorisation on two cores that TBB already uses. No active level = they run in the calling thread.
@@ -52,7 +53,9 @@ struct SparseSolver::Implementation {
     matrix.sorted = 1;
     matrix.packed = 1;
     factor = cholmod_analyze(&matrix, &common);
-    if (!factor) throw std::runtime_error(fmt::format("CHOLMOD could not analyse the pattern (status {})", common.status));
+    if (!factor)
+      throw std::runtime_error(
+          fmt::format("CHOLMOD could not analyse the pattern (status {})", common.status));
   }
   ~Implementation() {
     cholmod_free_dense(&solution, &common);
@@ -78,8 +81,12 @@ SparseSolver::~SparseSolver() = default;
 SparseSolver::SparseSolver(SparseSolver&&) noexcept = default;
 SparseSolver& SparseSolver::operator=(SparseSolver&&) noexcept = default;
 
-const SymmetricPattern& SparseSolver::pattern() const { return implementation_->pattern; }
-std::span<double> SparseSolver::values() { return implementation_->values; }
+const SymmetricPattern& SparseSolver::pattern() const {
+  return implementation_->pattern;
+}
+std::span<double> SparseSolver::values() {
+  return implementation_->values;
+}
 
 bool SparseSolver::factorise() {
   auto& self = *implementation_;
@@ -87,8 +94,9 @@ bool SparseSolver::factorise() {
   cholmod_factorize(&self.matrix, self.factor, &self.common);
   if (self.common.status == CHOLMOD_NOT_POSDEF) return false;
   if (self.common.status < CHOLMOD_OK)
-    throw std::runtime_error(fmt::format("CHOLMOD failed to factorise (status {}: {})", self.common.status,
-                                         self.common.status == CHOLMOD_OUT_OF_MEMORY ? "out of memory" : "see cholmod.h"));
+    throw std::runtime_error(
+        fmt::format("CHOLMOD failed to factorise (status {}: {})", self.common.status,
+                    self.common.status == CHOLMOD_OUT_OF_MEMORY ? "out of memory" : "see cholmod.h"));
   return self.factor->minor == self.factor->n;
 }
 
@@ -100,19 +108,27 @@ void SparseSolver::solve(std::span<double> right_hand_side) {
   b.x = right_hand_side.data();
   b.xtype = CHOLMOD_REAL;
   b.dtype = CHOLMOD_DOUBLE;
-  cholmod_solve2(CHOLMOD_A, self.factor, &b, nullptr, &self.solution, nullptr, &self.work_y, &self.work_e, &self.common);
+  cholmod_solve2(CHOLMOD_A, self.factor, &b, nullptr, &self.solution, nullptr, &self.work_y, &self.work_e,
+                 &self.common);
   if (!self.solution) throw std::runtime_error("CHOLMOD failed to solve");
   const double* x = static_cast<const double*>(self.solution->x);
   std::copy(x, x + right_hand_side.size(), right_hand_side.begin());
 }
 
-double SparseSolver::factor_nonzeros() const { return implementation_->common.lnz; }
-double SparseSolver::factor_flops() const { return implementation_->common.fl; }
+double SparseSolver::factor_nonzeros() const {
+  return implementation_->common.lnz;
+}
+double SparseSolver::factor_flops() const {
+  return implementation_->common.fl;
+}
 
 BlasReport blas_report() {
   const char* config = openblas_get_config();
   const char* core = openblas_get_corename();
-  if (!config || !core) return {"unknown BLAS", "the BLAS is not OpenBLAS: install libopenblas0-pthread, factorisations take 4 to 8 times longer"};
+  if (!config || !core)
+    return {
+        "unknown BLAS",
+        "the BLAS is not OpenBLAS: install libopenblas0-pthread, factorisations take 4 to 8 times longer"};
   return {fmt::format("{} ({} kernels)", config, core), ""};
 }
 

@@ -7,16 +7,17 @@
 
 namespace heddle {
 
-/// Pattern of a symmetric matrix: lower triangle by columns (compressed), row indices ascending in each column,
-/// diagonal present.
+/// Pattern of a symmetric matrix: lower triangle by columns (compressed), row indices ascending in each
+/// column, diagonal present.
 struct SymmetricPattern {
   int size = 0;
   std::vector<int> column_start;  ///< size + 1
   std::vector<int> row;
 };
 
-/// Direct solver for symmetric positive definite systems (CHOLMOD, supernodal): one symbolic analysis a pattern,
-/// any number of numeric factorisations. One BLAS thread, so that results do not depend on the machine's load.
+/// Direct solver for symmetric positive definite systems (CHOLMOD, supernodal): one symbolic analysis a
+/// pattern, any number of numeric factorisations. One BLAS thread, so that results do not depend on the
+/// machine's load.
 class SparseSolver {
  public:
   explicit SparseSolver(SymmetricPattern pattern);

@@ -13,8 +13,8 @@ namespace {
 
 // B-spline coefficients c[0..n+1] of the cubic spline through n values one unit apart,
 //     (c[i] + 4 c[i+1] + c[i+2]) / 6 = v[i],
-// with a quadratic first and last piece: third difference zero there, so parabolas are met exactly and the end
-// curvature is that of the data (a natural end would lose all stiffness at the edge of the table).
+// with a quadratic first and last piece: third difference zero there, so parabolas are met exactly and the
+// end curvature is that of the data (a natural end would lose all stiffness at the edge of the table).
 // Eliminating c[0] and c[1] (and the last two alike) leaves a tridiagonal system for c[2..n-1].
 void interpolate(const double* v, int n, double* c) {
   const int unknowns = n - 2;
@@ -41,12 +41,24 @@ struct Weights {
 };
 
 // Uniform cubic B-spline weights at t in [0, 1], and their derivatives in t.
-Weights weights(double t) {
+Weights weights_inside(double t) {
   const double u = 1.0 - t;
-  return {{u * u * u / 6.0, (4.0 - 6.0 * t * t + 3.0 * t * t * t) / 6.0, (4.0 - 6.0 * u * u + 3.0 * u * u * u) / 6.0,
-           t * t * t / 6.0},
+  return {{u * u * u / 6.0, (4.0 - 6.0 * t * t + 3.0 * t * t * t) / 6.0,
+           (4.0 - 6.0 * u * u + 3.0 * u * u * u) / 6.0, t * t * t / 6.0},
           {-0.5 * u * u, 0.5 * t * (3.0 * t - 4.0), 0.5 * u * (4.0 - 3.0 * u), 0.5 * t * t},
           {u, 3.0 * t - 2.0, 3.0 * u - 2.0, t}};
+}
+
+// The same carried on quadratically by `outside` grid steps beyond the edge. Extending each weight, and not
+// the surface as a whole, keeps all derivatives exact slopes of one another.
+Weights weights(double t, double outside) {
+  Weights w = weights_inside(t);
+  if (outside == 0.0) return w;
+  for (std::size_t k = 0; k < 4; ++k) {
+    w.value[k] += outside * (w.first[k] + 0.5 * outside * w.second[k]);
+    w.first[k] += outside * w.second[k];
+  }
+  return w;
 }
 
 struct Place {
@@ -67,16 +79,18 @@ Place place(double x, double x0, double dx, int n) {
 Surface::Surface(double x0, double dx, int nx, double y0, double dy, int ny, std::vector<double> values)
     : x0_(x0), dx_(dx), y0_(y0), dy_(dy), nx_(nx), ny_(ny), values_(std::move(values)) {
   if (nx < 4 || ny < 4 || !(dx > 0.0) || !(dy > 0.0) || values_.size() != static_cast<std::size_t>(nx) * ny)
-    throw std::invalid_argument(fmt::format("surface: {} values for a grid of {} x {} (4 or more each way, steps > 0)",
-                                            values_.size(), nx, ny));
+    throw std::invalid_argument(fmt::format(
+        "surface: {} values for a grid of {} x {} (4 or more each way, steps > 0)", values_.size(), nx, ny));
   for (std::size_t k = 0; k < values_.size(); ++k)
     if (!std::isfinite(values_[k]))
-      throw std::invalid_argument(
-          fmt::format("surface value ({}, {}) is not finite", k / static_cast<std::size_t>(ny), k % static_cast<std::size_t>(ny)));
+      throw std::invalid_argument(fmt::format("surface value ({}, {}) is not finite",
+                                              k / static_cast<std::size_t>(ny),
+                                              k % static_cast<std::size_t>(ny)));
 
   const int mx = nx + 2, my = ny + 2;
   std::vector<double> rows(static_cast<std::size_t>(nx) * my);
-  for (int i = 0; i < nx; ++i) interpolate(&values_[static_cast<std::size_t>(i) * ny], ny, &rows[static_cast<std::size_t>(i) * my]);
+  for (int i = 0; i < nx; ++i)
+    interpolate(&values_[static_cast<std::size_t>(i) * ny], ny, &rows[static_cast<std::size_t>(i) * my]);
   coefficients_.assign(static_cast<std::size_t>(mx) * my, 0.0);
   std::vector<double> column(nx), solved(mx);
   for (int j = 0; j < my; ++j) {
@@ -88,7 +102,7 @@ Surface::Surface(double x0, double dx, int nx, double y0, double dy, int ny, std
 
 Surface::Value Surface::evaluate(double x, double y) const {
   const Place px = place(x, x0_, dx_, nx_), py = place(y, y0_, dy_, ny_);
-  const Weights wx = weights(px.t), wy = weights(py.t);
+  const Weights wx = weights(px.t, px.outside), wy = weights(py.t, py.outside);
   const int my = ny_ + 2;
   Value v{0, 0, 0, 0, 0, 0};
   for (int a = 0; a < 4; ++a) {
@@ -111,12 +125,6 @@ Surface::Value Surface::evaluate(double x, double y) const {
   v.fxx /= dx_ * dx_;
   v.fyy /= dy_ * dy_;
   v.fxy /= dx_ * dy_;
-  if (px.outside != 0.0 || py.outside != 0.0) {
-    const double ox = px.outside * dx_, oy = py.outside * dy_;
-    v.f += v.fx * ox + v.fy * oy + 0.5 * (v.fxx * ox * ox + v.fyy * oy * oy) + v.fxy * ox * oy;
-    v.fx += v.fxx * ox + v.fxy * oy;
-    v.fy += v.fyy * oy + v.fxy * ox;
-  }
   return v;
 }
 

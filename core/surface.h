@@ -4,9 +4,8 @@
 
 namespace heddle {
 
-/// Twice differentiable surface through values on an even grid: tensor-product cubic spline with
-/// quadratic end pieces. Beyond the grid it goes on with its second-order Taylor expansion at the nearest edge point, so first derivatives stay
-/// linear and convexity is kept.
+/// Twice differentiable surface through values on an even grid: tensor-product cubic spline with quadratic
+/// end pieces. Beyond the grid it goes on quadratically, so stiffness is held there.
 class Surface {
  public:
   struct Value {

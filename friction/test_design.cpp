@@ -25,7 +25,8 @@ const std::map<std::string, Factor>& factors() {
       {"normal_force", {"N", &TestDesign::normal_force, [](double v) { return v; }}},
       {"tool_temperature", {"C", &TestDesign::tool_temperature, [](double v) { return v + 273.15; }}},
       {"fabric_temperature", {"C", &TestDesign::fabric_temperature, [](double v) { return v + 273.15; }}},
-      {"orientation", {"deg", &TestDesign::orientation, [](double v) { return v * std::numbers::pi / 180.0; }}}};
+      {"orientation",
+       {"deg", &TestDesign::orientation, [](double v) { return v * std::numbers::pi / 180.0; }}}};
   return all;
 }
 
@@ -49,7 +50,8 @@ class Reader {
       read_factor(line);
     }
     for (const auto& [name, factor] : factors())
-      if ((design_.*factor.levels).empty()) report("missing", name, "", "must have a line", "Give at least its baseline.");
+      if ((design_.*factor.levels).empty())
+        report("missing", name, "", "must have a line", "Give at least its baseline.");
     if (!problems_.empty()) throw InputError(std::move(problems_));
     return std::move(design_);
   }
@@ -59,12 +61,14 @@ class Reader {
     const auto cells = split(line, ',');
     const auto found = cells.empty() ? factors().end() : factors().find(cells[0]);
     if (found == factors().end() || cells.size() < 3) {
-      report("line", cells.empty() ? "" : cells[0], line, "must read parameter,unit,baseline,additional with a known parameter",
+      report("line", cells.empty() ? "" : cells[0], line,
+             "must read parameter,unit,baseline,additional with a known parameter",
              "Known are velocity, normal_force, tool_temperature, fabric_temperature and orientation.");
       return;
     }
     const Factor& factor = found->second;
-    if (cells[1] != factor.unit) report("unit", cells[0], cells[1], fmt::format("must be in {}", factor.unit), "Convert the levels.");
+    if (cells[1] != factor.unit)
+      report("unit", cells[0], cells[1], fmt::format("must be in {}", factor.unit), "Convert the levels.");
     add_level(factor, cells[0], cells[2]);
     if (cells.size() > 3)
       for (const std::string& level : split(cells[3], ';')) add_level(factor, cells[0], level);
@@ -79,7 +83,8 @@ class Reader {
       (design_.*factor.levels).push_back(factor.to_si(value));
   }
 
-  void report(const std::string& id, const std::string& key, const std::string& value, const std::string& rule, const std::string& way_out) {
+  void report(const std::string& id, const std::string& key, const std::string& value,
+              const std::string& rule, const std::string& way_out) {
     problems_.push_back({"friction.design." + id, key, value, rule, way_out, file_, line_});
   }
 
@@ -105,7 +110,8 @@ FrictionTestRow baseline(const TestDesign& design) {
 
 std::vector<FrictionTestRow> one_at_a_time(const TestDesign& design) {
   std::vector<FrictionTestRow> rows = {baseline(design)};
-  const auto vary = [&](const std::vector<double>& levels, double FrictionTestRow::*field, const std::function<std::string(double)>& name) {
+  const auto vary = [&](const std::vector<double>& levels, double FrictionTestRow::*field,
+                        const std::function<std::string(double)>& name) {
     for (std::size_t k = 1; k < levels.size(); ++k) {
       FrictionTestRow row = baseline(design);
       row.*field = levels[k];
@@ -113,11 +119,16 @@ std::vector<FrictionTestRow> one_at_a_time(const TestDesign& design) {
       rows.push_back(row);
     }
   };
-  vary(design.velocity, &FrictionTestRow::velocity, [](double v) { return fmt::format("velocity {:.4g} mm/s", 1e3 * v); });
-  vary(design.normal_force, &FrictionTestRow::normal_force, [](double v) { return fmt::format("normal force {:.4g} N", v); });
-  vary(design.tool_temperature, &FrictionTestRow::tool_temperature, [](double v) { return fmt::format("tool {:.4g} degC", v - 273.15); });
-  vary(design.fabric_temperature, &FrictionTestRow::fabric_temperature, [](double v) { return fmt::format("fabric {:.4g} degC", v - 273.15); });
-  vary(design.orientation, &FrictionTestRow::orientation, [](double v) { return fmt::format("orientation {:.4g} deg", v * 180.0 / std::numbers::pi); });
+  vary(design.velocity, &FrictionTestRow::velocity,
+       [](double v) { return fmt::format("velocity {:.4g} mm/s", 1e3 * v); });
+  vary(design.normal_force, &FrictionTestRow::normal_force,
+       [](double v) { return fmt::format("normal force {:.4g} N", v); });
+  vary(design.tool_temperature, &FrictionTestRow::tool_temperature,
+       [](double v) { return fmt::format("tool {:.4g} degC", v - 273.15); });
+  vary(design.fabric_temperature, &FrictionTestRow::fabric_temperature,
+       [](double v) { return fmt::format("fabric {:.4g} degC", v - 273.15); });
+  vary(design.orientation, &FrictionTestRow::orientation,
+       [](double v) { return fmt::format("orientation {:.4g} deg", v * 180.0 / std::numbers::pi); });
   return rows;
 }
 
@@ -137,12 +148,15 @@ std::vector<FrictionTestRow> all_combinations(const TestDesign& design) {
   return rows;
 }
 
-TestDesign parse_test_design(const std::string& text, const std::string& file) { return Reader(text, file).read(); }
+TestDesign parse_test_design(const std::string& text, const std::string& file) {
+  return Reader(text, file).read();
+}
 
 TestDesign read_test_design(const std::string& path) {
   std::ifstream stream(path);
   if (!stream)
-    throw InputError({{"friction.design.file", "friction_test.design", path, "must be a readable file", "Check the path; it is relative to the configuration."}});
+    throw InputError({{"friction.design.file", "friction_test.design", path, "must be a readable file",
+                       "Check the path; it is relative to the configuration."}});
   std::stringstream text;
   text << stream.rdbuf();
   return parse_test_design(text.str(), path);

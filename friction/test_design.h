@@ -7,8 +7,8 @@
 
 namespace heddle::friction {
 
-/// Factors of a test campaign that varies one at a time around a baseline (paper, Table 2). SI units; the first
-/// level of each factor is its baseline.
+/// Factors of a test campaign that varies one at a time around a baseline (paper, Table 2). SI units; the
+/// first level of each factor is its baseline.
 struct TestDesign {
   std::vector<double> velocity;            ///< [m/s]
   std::vector<double> normal_force;        ///< [N]
@@ -23,8 +23,9 @@ std::vector<FrictionTestRow> one_at_a_time(const TestDesign& design);
 /// Every combination of the levels that a law reads (orientation stays at its baseline).
 std::vector<FrictionTestRow> all_combinations(const TestDesign& design);
 
-/// Reads a design: header `parameter,unit,baseline,additional`, one line a factor, additional levels separated by ;.
-/// Parameters and units: velocity mm/s, normal_force N, tool_temperature C, fabric_temperature C, orientation deg.
+/// Reads a design: header `parameter,unit,baseline,additional`, one line a factor, additional levels
+/// separated by ;. Parameters and units: velocity mm/s, normal_force N, tool_temperature C,
+/// fabric_temperature C, orientation deg.
 /// @throws InputError  with every problem and its line
 TestDesign parse_test_design(const std::string& text, const std::string& file);
 TestDesign read_test_design(const std::string& path);

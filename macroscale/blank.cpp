@@ -19,9 +19,11 @@ std::vector<TowTriple> tow_triples(const Blank& blank) {
       const double edge_u = (j == 0 || j == blank.nv) ? 0.5 : 1.0;
       const double edge_v = (i == 0 || i == blank.nu) ? 0.5 : 1.0;
       if (i > 0 && i < blank.nu)
-        triples.push_back({blank.node(i - 1, j), blank.node(i, j), blank.node(i + 1, j), edge_u * blank.spacing[1], 0});
+        triples.push_back(
+            {blank.node(i - 1, j), blank.node(i, j), blank.node(i + 1, j), edge_u * blank.spacing[1], 0});
       if (j > 0 && j < blank.nv)
-        triples.push_back({blank.node(i, j - 1), blank.node(i, j), blank.node(i, j + 1), edge_v * blank.spacing[0], 1});
+        triples.push_back(
+            {blank.node(i, j - 1), blank.node(i, j), blank.node(i, j + 1), edge_v * blank.spacing[0], 1});
     }
   }
   return triples;
@@ -44,7 +46,8 @@ Blank make_blank(std::array<double, 2> size, double spacing, double orientation,
   const double c = std::cos(orientation), s = std::sin(orientation);
   for (int i = 0; i <= blank.nu; ++i) {
     for (int j = 0; j <= blank.nv; ++j) {
-      // Written so that opposite nodes are exact mirror images: the symmetric part must not be tilted by rounding.
+      // Written so that opposite nodes are exact mirror images: the symmetric part must not be tilted by
+      // rounding.
       const double u = (i - 0.5 * blank.nu) * blank.spacing[0];
       const double v = (j - 0.5 * blank.nv) * blank.spacing[1];
       blank.reference.emplace_back(c * u - s * v, s * u + c * v, z);
@@ -52,7 +55,8 @@ Blank make_blank(std::array<double, 2> size, double spacing, double orientation,
   }
   for (int i = 0; i < blank.nu; ++i)
     for (int j = 0; j < blank.nv; ++j)
-      blank.quads.push_back({blank.node(i, j), blank.node(i + 1, j), blank.node(i + 1, j + 1), blank.node(i, j + 1)});
+      blank.quads.push_back(
+          {blank.node(i, j), blank.node(i + 1, j), blank.node(i + 1, j + 1), blank.node(i, j + 1)});
   blank.node_area.assign(blank.reference.size(), 0.0);
   for (const auto& quad : blank.quads)
     for (int node : quad) blank.node_area[node] += blank.corner_area();

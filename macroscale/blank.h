@@ -23,14 +23,15 @@ struct TowTriple {
 };
 
 /// Tow-aligned structured grid of one ply: nodes i along warp, j along weft, index = i * (nv + 1) + j.
-/// Trusses (edges), shear corners and bending triples share the nodes, so stiff tows cannot lock against shear.
+/// Trusses (edges), shear corners and bending triples share the nodes, so stiff tows cannot lock against
+/// shear.
 struct Blank {
-  int nu = 0, nv = 0;                       ///< cells along warp and weft
-  std::array<double, 2> spacing{};          ///< [m]
-  std::vector<Eigen::Vector3d> reference;   ///< node positions, flat, stress-free [m]
-  std::vector<std::array<int, 4>> quads;    ///< (i,j) (i+1,j) (i+1,j+1) (i,j+1)
+  int nu = 0, nv = 0;                      ///< cells along warp and weft
+  std::array<double, 2> spacing{};         ///< [m]
+  std::vector<Eigen::Vector3d> reference;  ///< node positions, flat, stress-free [m]
+  std::vector<std::array<int, 4>> quads;   ///< (i,j) (i+1,j) (i+1,j+1) (i,j+1)
   std::vector<TowTriple> triples;
-  std::vector<double> node_area;            ///< tributary area [m^2]
+  std::vector<double> node_area;  ///< tributary area [m^2]
 
   int nodes() const { return static_cast<int>(reference.size()); }
   int node(int i, int j) const { return i * (nv + 1) + j; }

@@ -15,7 +15,9 @@ struct Ramp {
   double value, slope;  ///< f, df/dy
 };
 
-Ramp ramp(double y) { return y < 1.0 ? Ramp{y * (2.0 - y), 2.0 * (1.0 - y)} : Ramp{1.0, 0.0}; }
+Ramp ramp(double y) {
+  return y < 1.0 ? Ramp{y * (2.0 - y), 2.0 * (1.0 - y)} : Ramp{1.0, 0.0};
+}
 
 struct Resistance {
   double over_speed;  ///< g(U) / U [s/m], finite at rest
@@ -35,10 +37,13 @@ double smoothed_coefficient(const FrictionSettings& settings, const FrictionPoin
 }
 
 // Gauss-Legendre, 4 points on [-1, 1].
-constexpr std::array<double, 4> gauss_point = {-0.8611363115940526, -0.3399810435848563, 0.3399810435848563, 0.8611363115940526};
-constexpr std::array<double, 4> gauss_weight = {0.3478548451374538, 0.6521451548625461, 0.6521451548625461, 0.3478548451374538};
+constexpr std::array<double, 4> gauss_point = {-0.8611363115940526, -0.3399810435848563, 0.3399810435848563,
+                                               0.8611363115940526};
+constexpr std::array<double, 4> gauss_weight = {0.3478548451374538, 0.6521451548625461, 0.6521451548625461,
+                                                0.3478548451374538};
 
-double integral_of_coefficient(const FrictionSettings& settings, const FrictionPoint& point, double from, double to) {
+double integral_of_coefficient(const FrictionSettings& settings, const FrictionPoint& point, double from,
+                               double to) {
   const double middle = 0.5 * (from + to), half = 0.5 * (to - from);
   double sum = 0.0;
   for (std::size_t k = 0; k < gauss_point.size(); ++k)
@@ -69,7 +74,9 @@ double approach_at(const Curve& compaction, double pressure) {
   return 0.5 * (low + high);
 }
 
-Vector3d slip_velocity(const FrictionPoint& point, const Vector3d& v) { return v - point.normal.dot(v) * point.normal; }
+Vector3d slip_velocity(const FrictionPoint& point, const Vector3d& v) {
+  return v - point.normal.dot(v) * point.normal;
+}
 
 friction::Friction law_at(const FrictionSettings& settings, const FrictionPoint& point, double speed) {
   friction::Context context = point.context;
@@ -82,7 +89,8 @@ Vector3d friction_force(const FrictionSettings& settings, const FrictionPoint& p
   return point.load * resistance(settings, point, slip.norm()).over_speed * slip;
 }
 
-Matrix3d friction_tangent(const FrictionSettings& settings, const FrictionPoint& point, const Vector3d& v, bool positive) {
+Matrix3d friction_tangent(const FrictionSettings& settings, const FrictionPoint& point, const Vector3d& v,
+                          bool positive) {
   const Vector3d slip = slip_velocity(point, v);
   const double speed = slip.norm();
   Resistance r = resistance(settings, point, speed);
@@ -90,10 +98,12 @@ Matrix3d friction_tangent(const FrictionSettings& settings, const FrictionPoint&
   const Matrix3d tangent_plane = Matrix3d::Identity() - point.normal * point.normal.transpose();
   if (speed < 1e-9 * settings.smoothing) return point.load * r.over_speed * tangent_plane;
   const Vector3d direction = slip / speed;
-  return point.load * (r.over_speed * tangent_plane + (r.slope - r.over_speed) * direction * direction.transpose());
+  return point.load *
+         (r.over_speed * tangent_plane + (r.slope - r.over_speed) * direction * direction.transpose());
 }
 
-double friction_power_difference(const FrictionSettings& settings, const FrictionPoint& point, double from, double to) {
+double friction_power_difference(const FrictionSettings& settings, const FrictionPoint& point, double from,
+                                 double to) {
   // The ramp's end is the only kink: integrate on each side of it.
   const double knee = std::clamp(settings.smoothing, std::min(from, to), std::max(from, to));
   double sum = 0.0;

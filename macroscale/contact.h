@@ -7,7 +7,8 @@
 
 namespace heddle::macroscale {
 
-/// Normal contact of one point: the fabric's own compaction curve, a physical stiffness and no numerical penalty.
+/// Normal contact of one point: the fabric's own compaction curve, a physical stiffness and no numerical
+/// penalty.
 struct NormalContact {
   double approach = 0.0;   ///< overlap of tool and stress-free half thickness [m]; <= 0: apart
   double energy = 0.0;     ///< per area, integral of the pressure [J/m^2]
@@ -17,18 +18,20 @@ struct NormalContact {
 
 NormalContact normal_contact(const Curve& compaction, double distance, double half_thickness);
 
-/// Approach of one face at which the compaction curve carries a pressure [m]: where a closing tool will come to rest.
+/// Approach of one face at which the compaction curve carries a pressure [m]: where a closing tool will come
+/// to rest.
 double approach_at(const Curve& compaction, double pressure);
 
-/// Friction of one point while its load, normal and temperatures are held (lagged): a potential in slip velocity,
+/// Friction of one point while its load, normal and temperatures are held (lagged): a potential in slip
+/// velocity,
 ///     D(v) = N dt Int_0^|v| g(U) dU,   g(U) = mu(U) f(U/eps),
 /// with mu(U) inside, so every Newton iteration sees the current coefficient, and f the smooth ramp
-/// f(y) = 2y - y^2 (y < 1), 1 (y >= 1) that makes sticking differentiable. Source of the smoothing: Li et al. 2020
-/// (IPC), lagged as there. Traction, potential and tangent are built from mu here and nowhere else.
+/// f(y) = 2y - y^2 (y < 1), 1 (y >= 1) that makes sticking differentiable. Source of the smoothing: Li et al.
+/// 2020 (IPC), lagged as there. Traction, potential and tangent are built from mu here and nowhere else.
 struct FrictionPoint {
-  double load = 0.0;                 ///< N = p A [N]
-  Eigen::Vector3d normal{0, 0, 1};   ///< unit
-  friction::Context context{};       ///< slip speed is filled in at evaluation
+  double load = 0.0;                ///< N = p A [N]
+  Eigen::Vector3d normal{0, 0, 1};  ///< unit
+  friction::Context context{};      ///< slip speed is filled in at evaluation
   friction::ContactState memory{};
 };
 
@@ -44,14 +47,18 @@ Eigen::Vector3d slip_velocity(const FrictionPoint& point, const Eigen::Vector3d&
 friction::Friction law_at(const FrictionSettings& settings, const FrictionPoint& point, double speed);
 
 /// Force on the tool's counterpart that resists slip, as gradient dD/dv / dt: points along the slip [N].
-Eigen::Vector3d friction_force(const FrictionSettings& settings, const FrictionPoint& point, const Eigen::Vector3d& v);
+Eigen::Vector3d friction_force(const FrictionSettings& settings, const FrictionPoint& point,
+                               const Eigen::Vector3d& v);
 
-/// Its derivative in v [N s/m], symmetric. `positive`: the falling branch of a law is cut to zero (convex part).
-Eigen::Matrix3d friction_tangent(const FrictionSettings& settings, const FrictionPoint& point, const Eigen::Vector3d& v,
-                                 bool positive);
+/// Its derivative in v [N s/m], symmetric. `positive`: the falling branch of a law is cut to zero (convex
+/// part).
+Eigen::Matrix3d friction_tangent(const FrictionSettings& settings, const FrictionPoint& point,
+                                 const Eigen::Vector3d& v, bool positive);
 
-/// N Int g dU from one slip speed to another [W]; times dt this is the change of D. Gauss quadrature between the
-/// two speeds, so the error vanishes with their distance and a line search near the solution sees no noise.
-double friction_power_difference(const FrictionSettings& settings, const FrictionPoint& point, double from, double to);
+/// N Int g dU from one slip speed to another [W]; times dt this is the change of D. Gauss quadrature between
+/// the two speeds, so the error vanishes with their distance and a line search near the solution sees no
+/// noise.
+double friction_power_difference(const FrictionSettings& settings, const FrictionPoint& point, double from,
+                                 double to);
 
 }  // namespace heddle::macroscale

@@ -13,11 +13,13 @@ namespace {
 using Eigen::Matrix3d;
 using Eigen::Vector3d;
 
-// Shear rate below which the power law gives way to a Newtonian start [1/s]: for n < 1 the bare power law has an
-// infinite tangent at rest. Forming rates are 0.1 to 10 1/s; the floor moves stresses there by less than 1e-5.
+// Shear rate below which the power law gives way to a Newtonian start [1/s]: for n < 1 the bare power law has
+// an infinite tangent at rest. Forming rates are 0.1 to 10 1/s; the floor moves stresses there by less than
+// 1e-5.
 constexpr double rate_floor = 1e-3;
 
-// |s| is kept below 1 where 1/cos(gamma) enters; a corner this closed (89.7 deg) is reported as inverted elsewhere.
+// |s| is kept below 1 where 1/cos(gamma) enters; a corner this closed (89.7 deg) is reported as inverted
+// elsewhere.
 constexpr double sine_limit = 0.99999;
 
 struct Kinematics {
@@ -58,7 +60,7 @@ ScalarLaw rate_law(const CornerLaw& law, const Kinematics& k, double angle_befor
   const double viscosity = law.rate_consistency * std::pow(size2, 0.5 * (n - 1.0));
   const double floor_energy = std::pow(rate_floor, n + 1.0);
   const double energy = law.time_step * (viscosity * size2 - law.rate_consistency * floor_energy) / (n + 1.0);
-  const double torque = viscosity * rate;                                                      // d(dt R)/d gamma
+  const double torque = viscosity * rate;  // d(dt R)/d gamma
   const double tangent = viscosity * (1.0 + (n - 1.0) * rate * rate / size2) / law.time_step;  // second
   const double slope = 1.0 / k.c;               // d gamma / d s
   const double bend = k.s / (k.c * k.c * k.c);  // d2 gamma / d s2
@@ -66,8 +68,12 @@ ScalarLaw rate_law(const CornerLaw& law, const Kinematics& k, double angle_befor
 }
 
 // ds/da and ds/db.
-Vector3d sine_slope_a(const Kinematics& k) { return (k.q - k.s * k.p) / k.la; }
-Vector3d sine_slope_b(const Kinematics& k) { return (k.p - k.s * k.q) / k.lb; }
+Vector3d sine_slope_a(const Kinematics& k) {
+  return (k.q - k.s * k.p) / k.la;
+}
+Vector3d sine_slope_b(const Kinematics& k) {
+  return (k.p - k.s * k.q) / k.lb;
+}
 
 // Nearest positive semi-definite matrix of a symmetric 2 x 2, closed form.
 void make_positive(double& xx, double& xy, double& yy) {
@@ -134,31 +140,39 @@ double corner_angle(const Vector3d& a, const Vector3d& b) {
 CornerEnergy corner_energy(const CornerLaw& law, const Vector3d& a, const Vector3d& b, double angle_before) {
   const Kinematics k = kinematics(law, a, b);
   const auto tension = law.fabric->tension_energy.evaluate(k.e1, k.e2);
-  return {law.area * tension.f, law.area * shear_law(law, k.s).energy, law.area * rate_law(law, k, angle_before).energy};
+  return {law.area * tension.f, law.area * shear_law(law, k.s).energy,
+          law.area * rate_law(law, k, angle_before).energy};
 }
 
-CornerGradient corner_gradient(const CornerLaw& law, const Vector3d& a, const Vector3d& b, double angle_before) {
+CornerGradient corner_gradient(const CornerLaw& law, const Vector3d& a, const Vector3d& b,
+                               double angle_before) {
   const Kinematics k = kinematics(law, a, b);
   const auto tension = law.fabric->tension_energy.evaluate(k.e1, k.e2);
   const Vector3d sa = law.area * sine_slope_a(k), sb = law.area * sine_slope_b(k);
   const double shear = shear_law(law, k.s).first, rate = rate_law(law, k, angle_before).first;
-  return {law.area * tension.fx / law.length_warp * k.p, law.area * tension.fy / law.length_weft * k.q,
-          shear * sa, shear * sb, rate * sa, rate * sb};
+  return {law.area * tension.fx / law.length_warp * k.p,
+          law.area * tension.fy / law.length_weft * k.q,
+          shear * sa,
+          shear * sb,
+          rate * sa,
+          rate * sb};
 }
 
-CornerHessian corner_hessian(const CornerLaw& law, const Vector3d& a, const Vector3d& b, double angle_before, Filter filter) {
+CornerHessian corner_hessian(const CornerLaw& law, const Vector3d& a, const Vector3d& b, double angle_before,
+                             Filter filter) {
   const Kinematics k = kinematics(law, a, b);
   const auto w = law.fabric->tension_energy.evaluate(k.e1, k.e2);
   const ScalarLaw shear = shear_law(law, k.s), rate = rate_law(law, k, angle_before);
   const double f1 = shear.first + rate.first, f2 = shear.second + rate.second;
 
-  // Frame of the corner: t1 = p, t2 in the plane of both tows, t3 normal. Out of plane the two edge components
-  // decouple from the four in-plane ones, so a 2 x 2 and a 4 x 4 block hold everything.
+  // Frame of the corner: t1 = p, t2 in the plane of both tows, t3 normal. Out of plane the two edge
+  // components decouple from the four in-plane ones, so a 2 x 2 and a 4 x 4 block hold everything.
   const Vector3d t2 = (k.q - k.s * k.p) / k.c;
   const Vector3d t3 = k.p.cross(t2);
   const double n1 = w.fx / law.length_warp, n2 = w.fy / law.length_weft;  // tension per length of edge
 
-  // e_ww of |a| is 1/|a| across the edge; s has second derivatives -s/|a|^2, -s/|b|^2 and 1/(|a||b|) out of plane.
+  // e_ww of |a| is 1/|a| across the edge; s has second derivatives -s/|a|^2, -s/|b|^2 and 1/(|a||b|) out of
+  // plane.
   double oaa = law.area * (n1 / k.la - f1 * k.s / (k.la * k.la));
   double obb = law.area * (n2 / k.lb - f1 * k.s / (k.lb * k.lb));
   double oab = law.area * f1 / (k.la * k.lb);
@@ -174,9 +188,10 @@ CornerHessian corner_hessian(const CornerLaw& law, const Vector3d& a, const Vect
   Eigen::Matrix4d in_plane;
   in_plane.topLeftCorner<2, 2>() = w.fxx / (law.length_warp * law.length_warp) * pp + n1 / k.la * (I - pp) +
                                    f2 * sa * sa.transpose() + f1 * saa;
-  in_plane.bottomRightCorner<2, 2>() = w.fyy / (law.length_weft * law.length_weft) * qq + n2 / k.lb * (I - qq) +
-                                       f2 * sb * sb.transpose() + f1 * sbb;
-  in_plane.topRightCorner<2, 2>() = w.fxy / (law.length_warp * law.length_weft) * pq + f2 * sa * sb.transpose() + f1 * sab;
+  in_plane.bottomRightCorner<2, 2>() = w.fyy / (law.length_weft * law.length_weft) * qq +
+                                       n2 / k.lb * (I - qq) + f2 * sb * sb.transpose() + f1 * sbb;
+  in_plane.topRightCorner<2, 2>() =
+      w.fxy / (law.length_warp * law.length_weft) * pq + f2 * sa * sb.transpose() + f1 * sab;
   in_plane.bottomLeftCorner<2, 2>() = in_plane.topRightCorner<2, 2>().transpose();
   in_plane *= law.area;
 

@@ -10,17 +10,17 @@ namespace heddle::macroscale {
 ///
 ///     W = A/4 [ w(e1, e2) + Psi(s) + dt R(gdot) ],   e1 = |a|/|a0| - 1,  e2 = |b|/|b0| - 1,  s = p.q
 ///
-/// a, b are the edge vectors from the corner node along warp and weft, p, q their directions, gamma = asin(s) the
-/// trellis shear angle, R = m_s/(n+1) |gdot|^(n+1) the rate term with gdot = (gamma - gamma_n)/dt.
+/// a, b are the edge vectors from the corner node along warp and weft, p, q their directions, gamma = asin(s)
+/// the trellis shear angle, R = m_s/(n+1) |gdot|^(n+1) the rate term with gdot = (gamma - gamma_n)/dt.
 /// Evaluating at the corners (not at the centre) leaves no hourglass mode. Design: solver 1.3.
 struct CornerLaw {
   const mesoscale::FabricProperties* fabric = nullptr;
-  double area = 0.0;               ///< A/4 [m^2]
-  double length_warp = 0.0;        ///< |a0| [m]
-  double length_weft = 0.0;        ///< |b0| [m]
-  double rate_consistency = 0.0;   ///< m_s at the blank's temperature [N s^n/m]; 0 = rate-free
-  double rate_index = 1.0;         ///< n [-]
-  double time_step = 0.0;          ///< dt [s]; 0 = no rate term
+  double area = 0.0;              ///< A/4 [m^2]
+  double length_warp = 0.0;       ///< |a0| [m]
+  double length_weft = 0.0;       ///< |b0| [m]
+  double rate_consistency = 0.0;  ///< m_s at the blank's temperature [N s^n/m]; 0 = rate-free
+  double rate_index = 1.0;        ///< n [-]
+  double time_step = 0.0;         ///< dt [s]; 0 = no rate term
 };
 
 /// Energies of one corner [J].
@@ -29,7 +29,8 @@ struct CornerEnergy {
   double total() const { return tension + shear + rate; }
 };
 
-CornerEnergy corner_energy(const CornerLaw& law, const Eigen::Vector3d& a, const Eigen::Vector3d& b, double angle_before);
+CornerEnergy corner_energy(const CornerLaw& law, const Eigen::Vector3d& a, const Eigen::Vector3d& b,
+                           double angle_before);
 
 /// Forces of one corner as dW/da, dW/db [N], by part (the ledger needs them apart).
 struct CornerGradient {
@@ -38,7 +39,8 @@ struct CornerGradient {
   Eigen::Vector3d b() const { return tension_b + shear_b + rate_b; }
 };
 
-CornerGradient corner_gradient(const CornerLaw& law, const Eigen::Vector3d& a, const Eigen::Vector3d& b, double angle_before);
+CornerGradient corner_gradient(const CornerLaw& law, const Eigen::Vector3d& a, const Eigen::Vector3d& b,
+                               double angle_before);
 
 /// d2W/da2, d2W/dadb (rows a, columns b), d2W/db2 [N/m].
 struct CornerHessian {
@@ -47,8 +49,8 @@ struct CornerHessian {
 
 enum class Filter { none, positive };  ///< positive: negative eigenvalues set to zero (projected Newton)
 
-CornerHessian corner_hessian(const CornerLaw& law, const Eigen::Vector3d& a, const Eigen::Vector3d& b, double angle_before,
-                             Filter filter);
+CornerHessian corner_hessian(const CornerLaw& law, const Eigen::Vector3d& a, const Eigen::Vector3d& b,
+                             double angle_before, Filter filter);
 
 /// gamma = asin(p.q) [rad], in (-pi/2, pi/2).
 double corner_angle(const Eigen::Vector3d& a, const Eigen::Vector3d& b);

@@ -9,8 +9,9 @@ namespace {
 using Eigen::Vector3d;
 
 struct Increment {
-  double stored = 0.0;     ///< change of energy
-  double work = 0.0;       ///< end-of-step force times increment; the excess over `stored` is numerical dissipation
+  double stored = 0.0;  ///< change of energy
+  double work =
+      0.0;  ///< end-of-step force times increment; the excess over `stored` is numerical dissipation
 };
 
 struct CornerIncrements {
@@ -28,8 +29,10 @@ CornerIncrements corner_increments(const System& system, const StepData& step, c
     for (std::size_t k = 0; k < 4; ++k) {
       const Corner& c = corners[k];
       const double before = start.corner_angle[4 * q + k];
-      const Vector3d a0 = start.node(c.along_warp) - start.node(c.node), b0 = start.node(c.along_weft) - start.node(c.node);
-      const Vector3d a = end.node(c.along_warp) - end.node(c.node), b = end.node(c.along_weft) - end.node(c.node);
+      const Vector3d a0 = start.node(c.along_warp) - start.node(c.node),
+                     b0 = start.node(c.along_weft) - start.node(c.node);
+      const Vector3d a = end.node(c.along_warp) - end.node(c.node),
+                     b = end.node(c.along_weft) - end.node(c.node);
       const CornerEnergy e0 = corner_energy(law, a0, b0, before), e = corner_energy(law, a, b, before);
       const CornerGradient g = corner_gradient(law, a, b, before);
       sum.tow.stored += e.tension - e0.tension;
@@ -44,7 +47,8 @@ CornerIncrements corner_increments(const System& system, const StepData& step, c
 
 // 1/2 k (|d1|^2 - |d0|^2) and k d1.(d1 - d0).
 Increment quadratic(double stiffness, const Vector3d& before, const Vector3d& after) {
-  return {0.5 * stiffness * (after.squaredNorm() - before.squaredNorm()), stiffness * after.dot(after - before)};
+  return {0.5 * stiffness * (after.squaredNorm() - before.squaredNorm()),
+          stiffness * after.dot(after - before)};
 }
 
 void add(Increment& sum, const Increment& part) {
@@ -55,7 +59,9 @@ void add(Increment& sum, const Increment& part) {
 Increment bending_increment(const System& system, const State& start, const State& end) {
   Increment sum;
   for (const TowTriple& t : system.scene().blank.triples) {
-    const auto difference = [&](const State& s) -> Vector3d { return s.node(t.before) - 2.0 * s.node(t.middle) + s.node(t.after); };
+    const auto difference = [&](const State& s) -> Vector3d {
+      return s.node(t.before) - 2.0 * s.node(t.middle) + s.node(t.after);
+    };
     add(sum, quadratic(system.bending_stiffness(t), difference(start), difference(end)));
   }
   return sum;
@@ -64,7 +70,9 @@ Increment bending_increment(const System& system, const State& start, const Stat
 Increment twist_increment(const System& system, const State& start, const State& end) {
   Increment sum;
   for (const auto& q : system.scene().blank.quads) {
-    const auto twist = [&](const State& s) -> Vector3d { return s.node(q[0]) - s.node(q[1]) + s.node(q[2]) - s.node(q[3]); };
+    const auto twist = [&](const State& s) -> Vector3d {
+      return s.node(q[0]) - s.node(q[1]) + s.node(q[2]) - s.node(q[3]);
+    };
     add(sum, quadratic(system.twist_stiffness(), twist(start), twist(end)));
   }
   return sum;
@@ -84,7 +92,8 @@ StepAccount account(const System& system, const StepData& step, const State& end
   StepLedger& ledger = result.ledger;
 
   const CornerIncrements corner = corner_increments(system, step, end);
-  const Increment bending = bending_increment(system, start, end), twist = twist_increment(system, start, end);
+  const Increment bending = bending_increment(system, start, end),
+                  twist = twist_increment(system, start, end);
   ledger.tow = corner.tow.stored;
   ledger.shear = corner.shear.stored;
   ledger.shear_rate = corner.rate;
@@ -144,7 +153,8 @@ StepAccount account(const System& system, const StepData& step, const State& end
 
   if (scene.stabilisation > 0.0)
     for (int i = 0; i < blank.nodes(); ++i)
-      ledger.artefact += scene.stabilisation * blank.node_area[i] / step.dt * (end.node(i) - start.node(i)).squaredNorm();
+      ledger.artefact +=
+          scene.stabilisation * blank.node_area[i] / step.dt * (end.node(i) - start.node(i)).squaredNorm();
   for (std::size_t k = 0; k < scene.load.size(); ++k) {
     const Eigen::Index n = static_cast<Eigen::Index>(k);
     ledger.work_held += scene.load[k] * (end.x[n] - start.x[n]);

@@ -9,19 +9,19 @@
 
 namespace heddle::macroscale {
 
-/// Where the energy of one step went [J]: work in, energy stored, energy dissipated. Each entry is computed for
-/// itself, from forces at the end of the step times increments; none is a remainder.
+/// Where the energy of one step went [J]: work in, energy stored, energy dissipated. Each entry is computed
+/// for itself, from forces at the end of the step times increments; none is a remainder.
 struct StepLedger {
-  double work_driven = 0.0;      ///< by driven tools (the punch)
-  double work_loaded = 0.0;      ///< by forces on loaded tools (the binder)
-  double work_held = 0.0;        ///< by supports that move, and dead loads
+  double work_driven = 0.0;  ///< by driven tools (the punch)
+  double work_loaded = 0.0;  ///< by forces on loaded tools (the binder)
+  double work_held = 0.0;    ///< by supports that move, and dead loads
   double tow = 0.0, shear = 0.0, bending = 0.0, twist = 0.0, compaction = 0.0;  ///< change of stored energy
-  double kinetic = 0.0;          ///< change of kinetic energy
-  std::vector<double> friction;  ///< dissipated at each tool
-  double shear_rate = 0.0;       ///< dissipated by rate-dependent shear: force times increment
-  double artefact = 0.0;         ///< dissipated by the stabilisation switch
-  double numerical = 0.0;        ///< of backward Euler: 1/2 |dv|^2_M and the second-order part of each stored term
-  double friction_outside = 0.0; ///< share of friction done outside the calibrated box [J]
+  double kinetic = 0.0;                                                         ///< change of kinetic energy
+  std::vector<double> friction;                                                 ///< dissipated at each tool
+  double shear_rate = 0.0;  ///< dissipated by rate-dependent shear: force times increment
+  double artefact = 0.0;    ///< dissipated by the stabilisation switch
+  double numerical = 0.0;   ///< of backward Euler: 1/2 |dv|^2_M and the second-order part of each stored term
+  double friction_outside = 0.0;  ///< share of friction done outside the calibrated box [J]
 
   double stored() const { return tow + shear + bending + twist + compaction + kinetic; }
   double dissipated() const;
@@ -32,8 +32,9 @@ struct StepLedger {
 /// Forces on each tool by the fabric, and the balance of the blank.
 struct StepForces {
   std::vector<Eigen::Vector3d> on_tool;  ///< by the fabric on tool k [N]
-  Eigen::Vector3d by_supports = Eigen::Vector3d::Zero();  ///< on the blank, by what holds its held unknowns [N]
-  double imbalance = 0.0;                ///< |sum of forces on the blank - sum m a| [N]
+  Eigen::Vector3d by_supports =
+      Eigen::Vector3d::Zero();  ///< on the blank, by what holds its held unknowns [N]
+  double imbalance = 0.0;       ///< |sum of forces on the blank - sum m a| [N]
 };
 
 struct StepAccount {

@@ -12,14 +12,16 @@ namespace heddle::macroscale {
 
 namespace {
 
-Scene pull_out_scene(const PullOutSpec& spec, const mesoscale::FabricProperties& fabric, const friction::Model& friction) {
+Scene pull_out_scene(const PullOutSpec& spec, const mesoscale::FabricProperties& fabric,
+                     const friction::Model& friction) {
   Scene scene;
   scene.blank = make_blank(spec.size, spec.spacing);
   scene.fabric = &fabric;
   scene.friction = &friction;
   const double half = 0.5 * fabric.thickness;
   scene.tools = {{Role::die, PlaneShape{{0, 0, -half}, {0, 0, 1}}, Motion::fixed, 0.0, 0.0},
-                 {Role::binder, PlaneShape{{0, 0, half}, {0, 0, -1}}, Motion::loaded, spec.normal_force, spec.plate_mass}};
+                 {Role::binder, PlaneShape{{0, 0, half}, {0, 0, -1}}, Motion::loaded, spec.normal_force,
+                  spec.plate_mass}};
   scene.blank_temperature = spec.fabric_temperature;
   scene.tool_temperature = spec.tool_temperature;
   scene.slip_smoothing = std::max(2e-4 * spec.speed, 1e-6);
@@ -42,7 +44,8 @@ void close_plates(const System& system, State& state, const PullOutSpec& spec) {
 
 }  // namespace
 
-PullOutResult run_pull_out(const PullOutSpec& spec, const mesoscale::FabricProperties& fabric, const friction::Model& friction) {
+PullOutResult run_pull_out(const PullOutSpec& spec, const mesoscale::FabricProperties& fabric,
+                           const friction::Model& friction) {
   const Scene scene = pull_out_scene(spec, fabric, friction);
   System system(scene);
   State state = initial_state(scene);
@@ -72,7 +75,8 @@ PullOutResult run_pull_out(const PullOutSpec& spec, const mesoscale::FabricPrope
     if (k + 1 == spec.steps) {
       const double mean = spec.normal_force / (spec.size[0] * spec.size[1]);
       for (const FrictionPoint& point : step.friction[0])
-        result.pressure_spread = std::max(result.pressure_spread, std::abs(point.context.pressure / mean - 1.0));
+        result.pressure_spread =
+            std::max(result.pressure_spread, std::abs(point.context.pressure / mean - 1.0));
     }
     state = std::move(end);
   }

@@ -19,9 +19,13 @@ Profile profile_of(const ProcessSpec& process) {
 
 }  // namespace
 
-double stroke_time(const ProcessSpec& process) { return profile_of(process).duration; }
+double stroke_time(const ProcessSpec& process) {
+  return profile_of(process).duration;
+}
 
-double mean_speed(const ProcessSpec& process) { return process.stroke / profile_of(process).duration; }
+double mean_speed(const ProcessSpec& process) {
+  return process.stroke / profile_of(process).duration;
+}
 
 double stroke_at_time(const ProcessSpec& process, double time) {
   const Profile p = profile_of(process);

@@ -4,8 +4,9 @@
 
 namespace heddle::macroscale {
 
-/// Punch motion: constant speed, then a linear stop over the last part (paper, section 3.2.2: "relatively constant"
-/// and slowing "only in the final 0.01 s"). speed_scale squeezes the whole profile in time.
+/// Punch motion: constant speed, then, if asked for, a linear stop over the last part (paper, section 3.2.2:
+/// "relatively constant" and slowing "only in the final 0.01 s"). speed_scale squeezes the whole profile in
+/// time.
 
 /// Duration of the stroke [s].
 double stroke_time(const ProcessSpec& process);

@@ -37,7 +37,9 @@ std::vector<double> draw_in(const Blank& blank, const State& state) {
   std::vector<double> inward(blank.nodes(), 0.0);
   const Vector3d warp = (blank.reference[blank.node(1, 0)] - blank.reference[blank.node(0, 0)]).normalized();
   const Vector3d weft = (blank.reference[blank.node(0, 1)] - blank.reference[blank.node(0, 0)]).normalized();
-  const auto measure = [&](int n, const Vector3d& direction) { inward[n] = direction.dot(state.node(n) - blank.reference[n]); };
+  const auto measure = [&](int n, const Vector3d& direction) {
+    inward[n] = direction.dot(state.node(n) - blank.reference[n]);
+  };
   for (int j = 1; j < blank.nv; ++j) {
     measure(blank.node(0, j), warp);
     measure(blank.node(blank.nu, j), -warp);
@@ -49,8 +51,8 @@ std::vector<double> draw_in(const Blank& blank, const State& state) {
   return inward;
 }
 
-// Largest difference of a nodal field and its images under the mirrors and the diagonal swap of a square blank,
-// over the field's largest size. `mirror_sign`: -1 for shear, which changes sign in a mirror.
+// Largest difference of a nodal field and its images under the mirrors and the diagonal swap of a square
+// blank, over the field's largest size. `mirror_sign`: -1 for shear, which changes sign in a mirror.
 double symmetry_gap(const Blank& blank, const std::vector<double>& field, double mirror_sign) {
   double gap = 0.0, size = 0.0;
   const int n = blank.nu;
@@ -59,7 +61,8 @@ double symmetry_gap(const Blank& blank, const std::vector<double>& field, double
       const double value = field[blank.node(i, j)];
       size = std::max(size, std::abs(value));
       gap = std::max({gap, std::abs(value - mirror_sign * field[blank.node(n - i, j)]),
-                      std::abs(value - mirror_sign * field[blank.node(i, n - j)]), std::abs(value - field[blank.node(j, i)])});
+                      std::abs(value - mirror_sign * field[blank.node(i, n - j)]),
+                      std::abs(value - field[blank.node(j, i)])});
     }
   return size > 0.0 ? gap / size : 0.0;
 }
@@ -98,7 +101,8 @@ BlankState blank_state(const System& system, const State& state, const StepData*
     s.position.push_back({x.x(), x.y(), x.z()});
     s.velocity.push_back({v.x(), v.y(), v.z()});
   }
-  for (auto* field : {&s.pressure, &s.slip_speed, &s.friction_coefficient, &s.hersey}) field->assign(blank.nodes(), 0.0);
+  for (auto* field : {&s.pressure, &s.slip_speed, &s.friction_coefficient, &s.hersey})
+    field->assign(blank.nodes(), 0.0);
   if (step && scene.friction && !step->frictionless) add_contact_fields(system, state, *step, s);
   for (std::size_t k = 0; k < scene.tools.size(); ++k) {
     if (scene.tools[k].role == Role::punch) s.punch_displacement = -state.tool_z[k];
@@ -114,7 +118,8 @@ double largest_draw_in(const Blank& blank, const State& state) {
 
 double ledger_residual(const HistoryRow& r) {
   const double work = r.work_punch + r.work_binder;
-  const double stored = r.energy_tow + r.energy_shear + r.energy_bending + r.energy_twist + r.energy_compaction + r.energy_kinetic;
+  const double stored = r.energy_tow + r.energy_shear + r.energy_bending + r.energy_twist +
+                        r.energy_compaction + r.energy_kinetic;
   const double dissipated = r.friction_punch + r.friction_die + r.friction_binder + r.dissipation_shear_rate +
                             r.dissipation_artefact + r.dissipation_numerical;
   return work - stored - dissipated;
@@ -123,7 +128,8 @@ double ledger_residual(const HistoryRow& r) {
 double energy_residual_max(const std::vector<HistoryRow>& history) {
   double largest = 0.0;
   const double floor = history.empty() ? 0.0 : 0.01 * std::abs(history.back().work_punch);
-  for (const HistoryRow& row : history) largest = std::max(largest, std::abs(ledger_residual(row)) / std::max(row.work_punch, floor));
+  for (const HistoryRow& row : history)
+    largest = std::max(largest, std::abs(ledger_residual(row)) / std::max(row.work_punch, floor));
   return largest;
 }
 
@@ -135,12 +141,14 @@ bool on_falling_branch(const System& system, const StepData& step, const State& 
       const FrictionPoint& point = step.friction[k][i];
       if (point.load == 0.0) continue;
       const double speed = slip_velocity(point, system.relative_velocity(step, end.x, k, i)).norm();
-      if (speed > scene.slip_smoothing && !law_at(system.friction_settings(), point, speed).convex) return true;
+      if (speed > scene.slip_smoothing && !law_at(system.friction_settings(), point, speed).convex)
+        return true;
     }
   return false;
 }
 
-void summarise(StampingResult& result, const Blank& blank, const State& state, const StampingSpec& spec, double peak_force_balance) {
+void summarise(StampingResult& result, const Blank& blank, const State& state, const StampingSpec& spec,
+               double peak_force_balance) {
   StampingSummary& s = result.summary;
   s.steps = static_cast<int>(result.history.size());
   s.energy_residual_max = energy_residual_max(result.history);
@@ -153,8 +161,10 @@ void summarise(StampingResult& result, const Blank& blank, const State& state, c
     largest_force = std::max(largest_force, std::abs(row.punch_force));
     s.shear_angle_max = std::max(s.shear_angle_max, row.shear_angle_max);
     s.draw_in_max = std::max(s.draw_in_max, row.draw_in_max);
-    const double stored = row.energy_tow + row.energy_shear + row.energy_bending + row.energy_twist + row.energy_compaction;
-    if (row.work_punch > work_floor && stored > 0.0) s.twist_share = std::max(s.twist_share, row.energy_twist / stored);
+    const double stored =
+        row.energy_tow + row.energy_shear + row.energy_bending + row.energy_twist + row.energy_compaction;
+    if (row.work_punch > work_floor && stored > 0.0)
+      s.twist_share = std::max(s.twist_share, row.energy_twist / stored);
   }
   s.force_balance_residual_max = peak_force_balance / largest_force;
   s.numerical_dissipation_share = last.dissipation_numerical / last.work_punch;
@@ -162,7 +172,8 @@ void summarise(StampingResult& result, const Blank& blank, const State& state, c
   s.friction_work_outside = rubbed > 0.0 ? last.friction_work_outside / rubbed : 0.0;
   s.symmetry_gap_shear = s.symmetry_gap_draw_in = -1.0;
   // A right angle as well: the swap of warp and weft maps the square onto itself.
-  const bool square = blank.nu == blank.nv && blank.spacing[0] == blank.spacing[1] && std::abs(std::sin(2.0 * spec.blank.orientation)) < 1e-12;
+  const bool square = blank.nu == blank.nv && blank.spacing[0] == blank.spacing[1] &&
+                      std::abs(std::sin(2.0 * spec.blank.orientation)) < 1e-12;
   if (square) {
     s.symmetry_gap_shear = symmetry_gap(blank, nodal_shear_angle(blank, state.corner_angle), -1.0);
     s.symmetry_gap_draw_in = symmetry_gap(blank, draw_in(blank, state), 1.0);

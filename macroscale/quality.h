@@ -14,13 +14,15 @@ double largest_draw_in(const Blank& blank, const State& state);
 /// What the cumulative columns of a row leave over: work - stored - dissipated [J].
 double ledger_residual(const HistoryRow& row);
 
-/// Largest |cumulative residual| over max(cumulative punch work, 1 % of its final value), each row's own columns.
+/// Largest |cumulative residual| over max(cumulative punch work, 1 % of its final value), each row's own
+/// columns.
 double energy_residual_max(const std::vector<HistoryRow>& history);
 
 /// True where the friction law falls with slip speed at a loaded, sliding point.
 bool on_falling_branch(const System& system, const StepData& step, const State& end);
 
 /// Fills result.summary from the history and the end state.
-void summarise(StampingResult& result, const Blank& blank, const State& state, const StampingSpec& spec, double peak_force_balance);
+void summarise(StampingResult& result, const Blank& blank, const State& state, const StampingSpec& spec,
+               double peak_force_balance);
 
 }  // namespace heddle::macroscale

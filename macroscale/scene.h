@@ -21,8 +21,8 @@ struct Scene {
   const friction::Model* friction = nullptr;  ///< null = frictionless
   std::vector<Tool> tools;
 
-  std::vector<char> held;        ///< per unknown 3 i + c: 1 = its position is prescribed; empty = all free
-  std::vector<double> load;      ///< dead force per unknown [N]; empty = none
+  std::vector<char> held;    ///< per unknown 3 i + c: 1 = its position is prescribed; empty = all free
+  std::vector<double> load;  ///< dead force per unknown [N]; empty = none
 
   double blank_temperature = 453.15;  ///< [K]
   double tool_temperature = 358.15;   ///< [K]
@@ -42,11 +42,11 @@ struct Scene {
 
 /// Where everything is at one instant. Unknowns: 3 a node (x, y, z), then one z a loaded tool.
 struct State {
-  double time = 0.0;                       ///< [s]
-  Eigen::VectorXd x;                       ///< positions [m]
-  Eigen::VectorXd v;                       ///< velocities [m/s]
-  std::vector<double> tool_z;              ///< displacement of each tool along z [m]
-  std::vector<double> corner_angle;        ///< gamma of each corner, 4 a quad [rad]
+  double time = 0.0;                                        ///< [s]
+  Eigen::VectorXd x;                                        ///< positions [m]
+  Eigen::VectorXd v;                                        ///< velocities [m/s]
+  std::vector<double> tool_z;                               ///< displacement of each tool along z [m]
+  std::vector<double> corner_angle;                         ///< gamma of each corner, 4 a quad [rad]
   std::vector<std::vector<friction::ContactState>> memory;  ///< per tool, per node
 
   Eigen::Vector3d node(int i) const { return x.segment<3>(3 * i); }

@@ -21,7 +21,7 @@ friction::Context context_of(const Scene& scene, double pressure, double shear_a
   context.pressure = pressure;
   context.fabric_temperature = scene.blank_temperature;
   context.tool_temperature = scene.tool_temperature;
-  if (scene.contact_pressure == ContactPressure::real && !scene.fabric->contact.log_fraction.empty()) {
+  if (scene.contact_pressure == ContactPressure::real) {
     const auto floored = friction::floored(pressure);
     const auto area = scene.fabric->contact.evaluate(floored.value, shear_angle);
     context.area_fraction = area.fraction;
@@ -33,7 +33,8 @@ friction::Context context_of(const Scene& scene, double pressure, double shear_a
 using FrictionPoints = std::vector<std::vector<FrictionPoint>>;
 
 // Loads, normals and contexts of all points at x: what the next pass holds.
-FrictionPoints freeze(const System& system, const StepData& step, const VectorXd& x, const std::vector<double>& shear_angle) {
+FrictionPoints freeze(const System& system, const StepData& step, const VectorXd& x,
+                      const std::vector<double>& shear_angle) {
   const Scene& scene = system.scene();
   const int nodes = scene.blank.nodes();
   FrictionPoints points(scene.tools.size(), std::vector<FrictionPoint>(nodes));
@@ -53,8 +54,8 @@ FrictionPoints freeze(const System& system, const StepData& step, const VectorXd
 }
 
 // Sum over all points of the change of the friction force between two frozen sets, over its sum.
-double lag_residual(const System& system, const StepData& step, const VectorXd& x, const FrictionPoints& before,
-                    const FrictionPoints& after) {
+double lag_residual(const System& system, const StepData& step, const VectorXd& x,
+                    const FrictionPoints& before, const FrictionPoints& after) {
   const FrictionSettings settings = system.friction_settings();
   double change = 0.0, sum = 0.0;
   for (int k = 0; k < static_cast<int>(after.size()); ++k)
@@ -101,19 +102,20 @@ void demand_finite(const VectorXd& values, const char* quantity, double time) {
   if (values.allFinite()) return;
   for (Eigen::Index k = 0; k < values.size(); ++k)
     if (!std::isfinite(values[k]))
-      throw NumericalError(fmt::format("{} of node {} (component {}) is not finite at t = {:.6g} s", quantity, k / 3, k % 3, time));
+      throw NumericalError(fmt::format("{} of node {} (component {}) is not finite at t = {:.6g} s", quantity,
+                                       k / 3, k % 3, time));
 }
 
-// Newton direction. The unfiltered Hessian is tried where the last iteration took a full step (its quadratic tail
-// is worth a failed factorisation now and then), then the projected one, then a growing shift.
+// Newton direction. The unfiltered Hessian is tried where the last iteration took a full step (its quadratic
+// tail is worth a failed factorisation now and then), then the projected one, then a growing shift.
 struct Direction {
   bool found = false;
   VectorXd dx;
   bool exact = false;
 };
 
-Direction newton_direction(System& system, const StepData& step, const VectorXd& x, const VectorXd& g, bool try_exact,
-                           int& factorisations) {
+Direction newton_direction(System& system, const StepData& step, const VectorXd& x, const VectorXd& g,
+                           bool try_exact, int& factorisations) {
   Direction direction;
   const auto attempt = [&](Filter filter, double shift) {
     system.assemble(step, x, filter, shift);
@@ -141,8 +143,8 @@ struct Pass {
 };
 
 // Newton with line search at frozen friction loads.
-Pass minimise(System& system, const StepData& step, VectorXd& x, const SolveOptions& options, double tolerance,
-              StepSummary& summary) {
+Pass minimise(System& system, const StepData& step, VectorXd& x, const SolveOptions& options,
+              double tolerance, StepSummary& summary) {
   bool full_step = true;
   VectorXd g = system.gradient(step, x);
   double energy = system.potential(step, x).total();
@@ -176,7 +178,8 @@ Pass minimise(System& system, const StepData& step, VectorXd& x, const SolveOpti
       }
     }
     if (!accepted) {
-      if (direction.exact) {  // the exact direction may climb where the potential is not convex: project and try again
+      if (direction.exact) {  // the exact direction may climb where the potential is not convex: project and
+                              // try again
         full_step = false;
         continue;
       }
@@ -189,11 +192,12 @@ Pass minimise(System& system, const StepData& step, VectorXd& x, const SolveOpti
       const Largest left = largest(g);
       summary.residual = left.value;
       if (left.value <= 10.0 * tolerance) return {true, "converged"};
-      return {false, fmt::format("stagnated with a residual of {:.3g} N at node {}", left.value, left.unknown / 3)};
+      return {false,
+              fmt::format("stagnated with a residual of {:.3g} N at node {}", left.value, left.unknown / 3)};
     }
   }
-  return {false, fmt::format("{} Newton iterations left a residual of {:.3g} N at node {}", options.newton_limit,
-                             summary.residual, summary.worst_node)};
+  return {false, fmt::format("{} Newton iterations left a residual of {:.3g} N at node {}",
+                             options.newton_limit, summary.residual, summary.worst_node)};
 }
 
 void accept(const System& system, const StepData& step, const VectorXd& x, State& end) {
@@ -203,13 +207,15 @@ void accept(const System& system, const StepData& step, const VectorXd& x, State
   end.x = x;
   end.v = (x - start.x) / step.dt;
   end.tool_z.resize(scene.tools.size());
-  for (int k = 0; k < static_cast<int>(scene.tools.size()); ++k) end.tool_z[k] = system.tool_position(step, x, k);
+  for (int k = 0; k < static_cast<int>(scene.tools.size()); ++k)
+    end.tool_z[k] = system.tool_position(step, x, k);
   end.corner_angle.resize(start.corner_angle.size());
   for (std::size_t q = 0; q < scene.blank.quads.size(); ++q) {
     const auto corners = corners_of(scene.blank.quads[q]);
     for (std::size_t k = 0; k < 4; ++k) {
       const Corner& c = corners[k];
-      end.corner_angle[4 * q + k] = corner_angle(end.node(c.along_warp) - end.node(c.node), end.node(c.along_weft) - end.node(c.node));
+      end.corner_angle[4 * q + k] =
+          corner_angle(end.node(c.along_warp) - end.node(c.node), end.node(c.along_weft) - end.node(c.node));
     }
   }
   end.memory = start.memory;
@@ -232,8 +238,8 @@ void accept(const System& system, const StepData& step, const VectorXd& x, State
 }  // namespace
 
 StepSummary advance(System& system, const State& state, double dt, const std::vector<double>& tool_z,
-                    const std::function<void(double, VectorXd&)>& prescribe, const SolveOptions& options, State& end,
-                    StepData& step) {
+                    const std::function<void(double, VectorXd&)>& prescribe, const SolveOptions& options,
+                    State& end, StepData& step) {
   step = StepData{};
   step.frictionless = options.frictionless;
   step.dt = dt;
@@ -250,12 +256,14 @@ StepSummary advance(System& system, const State& state, double dt, const std::ve
   VectorXd x = step.target;
   if (prescribe) prescribe(state.time + dt, x);
   StepSummary summary;
-  const double tolerance = std::max(options.force_tolerance, options.relative_tolerance * mean_contact_force(system, old_place, state.x));
+  const double tolerance = std::max(
+      options.force_tolerance, options.relative_tolerance * mean_contact_force(system, old_place, state.x));
   const bool rubs = system.scene().friction && !step.frictionless;
   for (int lag = 0; lag < options.lag_limit_iterations; ++lag) {
     ++summary.lag_iterations;
     const bool first = rubs && lag == 0;
-    Pass pass = minimise(system, step, x, options, first ? tolerance * options.first_pass_factor : tolerance, summary);
+    Pass pass = minimise(system, step, x, options, first ? tolerance * options.first_pass_factor : tolerance,
+                         summary);
     if (!pass.converged) {
       summary.reason = pass.reason;
       return summary;
@@ -276,7 +284,8 @@ StepSummary advance(System& system, const State& state, double dt, const std::ve
     if (lag + 1 < options.lag_limit_iterations) step.friction = std::move(next);
   }
   if (summary.lag_residual > options.lag_limit) {
-    summary.reason = fmt::format("friction loads still move by {:.1f} % after {} updates", 100.0 * summary.lag_residual, summary.lag_iterations);
+    summary.reason = fmt::format("friction loads still move by {:.1f} % after {} updates",
+                                 100.0 * summary.lag_residual, summary.lag_iterations);
     return summary;
   }
   summary.converged = true;

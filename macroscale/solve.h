@@ -11,15 +11,15 @@
 namespace heddle::macroscale {
 
 struct SolveOptions {
-  double force_tolerance = 1e-3;      ///< largest nodal residual accepted [N]
-  double relative_tolerance = 1e-3;   ///< of the mean nodal contact force; the larger of the two holds
-  double first_pass_factor = 30.0;    ///< looser tolerance while friction loads are still to be updated
-  double largest_increment = 5e-3;    ///< of any unknown in one Newton iteration [m]
-  double stagnation = 1e-9;           ///< an increment this small is progress no more [m]
-  double lag_tolerance = 0.01;        ///< change of all friction force by one more update, relative
-  double lag_limit = 0.05;            ///< a step whose friction still moves by more than this is rejected
-  bool frictionless = false;          ///< friction off for this step
-  int newton_limit = 60;              ///< iterations a pass
+  double force_tolerance = 1e-3;     ///< largest nodal residual accepted [N]
+  double relative_tolerance = 1e-3;  ///< of the mean nodal contact force; the larger of the two holds
+  double first_pass_factor = 30.0;   ///< looser tolerance while friction loads are still to be updated
+  double largest_increment = 5e-3;   ///< of any unknown in one Newton iteration [m]
+  double stagnation = 1e-9;          ///< an increment this small is progress no more [m]
+  double lag_tolerance = 0.01;       ///< change of all friction force by one more update, relative
+  double lag_limit = 0.05;           ///< a step whose friction still moves by more than this is rejected
+  bool frictionless = false;         ///< friction off for this step
+  int newton_limit = 60;             ///< iterations a pass
   int lag_limit_iterations = 6;
   int line_search_limit = 30;
 };
@@ -27,13 +27,13 @@ struct SolveOptions {
 /// How one time step ended. Not converging is a result; a value that is not finite throws NumericalError.
 struct StepSummary {
   bool converged = false;
-  std::string reason;       ///< "converged", or what went wrong in words
+  std::string reason;  ///< "converged", or what went wrong in words
   int newton_iterations = 0;
   int lag_iterations = 0;
   int factorisations = 0;
-  double residual = 0.0;    ///< largest nodal residual at the end [N]
+  double residual = 0.0;  ///< largest nodal residual at the end [N]
   double lag_residual = 0.0;
-  int worst_node = -1;      ///< where the residual is largest
+  int worst_node = -1;  ///< where the residual is largest
 };
 
 /// One time step from `state`: lag loop around projected Newton with line search.
@@ -42,7 +42,7 @@ struct StepSummary {
 /// @param end      state at the end of the step, written only when converged
 /// @param step     what was held (frozen friction loads of the last pass), for the ledger
 StepSummary advance(System& system, const State& state, double dt, const std::vector<double>& tool_z,
-                    const std::function<void(double time, Eigen::VectorXd& x)>& prescribe, const SolveOptions& options,
-                    State& end, StepData& step);
+                    const std::function<void(double time, Eigen::VectorXd& x)>& prescribe,
+                    const SolveOptions& options, State& end, StepData& step);
 
 }  // namespace heddle::macroscale

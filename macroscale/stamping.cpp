@@ -18,7 +18,8 @@ namespace {
 
 constexpr int punch = 0, die = 1, binder = 2;  // order of the tools in the scene
 
-Scene stamping_scene(const StampingSpec& spec, const mesoscale::FabricProperties& fabric, const friction::Model& friction) {
+Scene stamping_scene(const StampingSpec& spec, const mesoscale::FabricProperties& fabric,
+                     const friction::Model& friction) {
   Scene scene;
   scene.blank = make_blank(spec.blank.size, spec.blank.spacing, spec.blank.orientation);
   scene.fabric = &fabric;
@@ -27,8 +28,8 @@ Scene stamping_scene(const StampingSpec& spec, const mesoscale::FabricProperties
   scene.tools = {
       {Role::punch, HemisphereShape{{0.0, 0.0, half}, spec.punch.radius}, Motion::driven, 0.0, 0.0},
       {Role::die, RingShape{-half, spec.die.opening_radius, spec.die.fillet, true}, Motion::fixed, 0.0, 0.0},
-      {Role::binder, RingShape{half, spec.binder.inner_radius, spec.binder.edge_fillet, false}, Motion::loaded,
-       spec.process.binder_force, spec.binder.mass}};
+      {Role::binder, RingShape{half, spec.binder.inner_radius, spec.binder.edge_fillet, false},
+       Motion::loaded, spec.process.binder_force, spec.binder.mass}};
   scene.blank_temperature = spec.process.blank_temperature;
   scene.tool_temperature = spec.process.tool_temperature;
   // Smoothing follows the punch speed, so a rate-free law stays rate-free; creep while sticking is below
@@ -107,7 +108,8 @@ void finish_row(HistoryRow& row, const BlankState& blank, const State& state, co
   row.shear_angle_max = 0.0;
   for (double angle : blank.shear_angle) row.shear_angle_max = std::max(row.shear_angle_max, std::abs(angle));
   row.tow_strain_max = 0.0;
-  for (const auto& strain : blank.tow_strain) row.tow_strain_max = std::max({row.tow_strain_max, strain[0], strain[1]});
+  for (const auto& strain : blank.tow_strain)
+    row.tow_strain_max = std::max({row.tow_strain_max, strain[0], strain[1]});
 }
 
 // Parts of one step: no more tool motion at once than contact can follow (design: solver 3).
@@ -120,7 +122,11 @@ class Run {
  public:
   Run(const StampingSpec& spec, const mesoscale::FabricProperties& fabric, const friction::Model& friction,
       const StampingObserver& observe)
-      : spec_(spec), observe_(observe), scene_(stamping_scene(spec, fabric, friction)), system_(scene_), state_(initial_state(scene_)) {}
+      : spec_(spec),
+        observe_(observe),
+        scene_(stamping_scene(spec, fabric, friction)),
+        system_(scene_),
+        state_(initial_state(scene_)) {}
 
   StampingResult result() {
     describe();
@@ -129,7 +135,8 @@ class Run {
     const BlankState blank = blank_state(system_, state_, nullptr);
     finish_row(row_, blank, state_, scene_);
     if (observe_) observe_(0, spec_.process.steps, row_, blank);
-    const int parts = parts_of_step(spec_, scene_.fabric->thickness, std::max(scene_.blank.spacing[0], scene_.blank.spacing[1]));
+    const int parts = parts_of_step(spec_, scene_.fabric->thickness,
+                                    std::max(scene_.blank.spacing[0], scene_.blank.spacing[1]));
     for (int step = 1; step <= spec_.process.steps; ++step)
       if (!advance_to(step, parts)) return fail(reason_);
     result_.summary.completed = true;
@@ -142,14 +149,18 @@ class Run {
     result_.summary.spacing = scene_.blank.spacing;
   }
 
-  // One nominal step, in equal parts of time; a part that fails is halved, and the rest goes on with the halves.
+  // One nominal step, in equal parts of time; a part that fails is halved, and the rest goes on with the
+  // halves.
   bool advance_to(int step, int parts) {
     row_.newton_iterations = row_.lag_iterations = 0;
     row_.force_balance = 0.0;
-    const double from = state_.time, to = time_at_stroke(spec_.process, spec_.process.stroke * step / spec_.process.steps);
+    const double from = state_.time,
+                 to = time_at_stroke(spec_.process, spec_.process.stroke * step / spec_.process.steps);
     long pieces = parts, done = 0;
     while (done < pieces) {
-      const double next = done + 1 == pieces ? to : from + (to - from) * static_cast<double>(done + 1) / static_cast<double>(pieces);
+      const double next = done + 1 == pieces ? to
+                                             : from + (to - from) * static_cast<double>(done + 1) /
+                                                          static_cast<double>(pieces);
       if (advance_part(next - state_.time, next)) {
         ++done;
         continue;
@@ -158,8 +169,8 @@ class Run {
       pieces *= 2;
       done *= 2;
       if ((to - from) / static_cast<double>(pieces) < 1e-7) {
-        reason_ = fmt::format("step {} of {} (punch at {:.2f} mm): {}; the time step fell below 1e-7 s", step, spec_.process.steps,
-                              -1e3 * state_.tool_z[punch], reason_);
+        reason_ = fmt::format("step {} of {} (punch at {:.2f} mm): {}; the time step fell below 1e-7 s", step,
+                              spec_.process.steps, -1e3 * state_.tool_z[punch], reason_);
         return false;
       }
     }
@@ -218,9 +229,12 @@ class Run {
 
 }  // namespace
 
-StampingResult run_stamping(const StampingSpec& spec, const mesoscale::FabricProperties& fabric, const friction::Model& friction,
-                            const StampingObserver& observe) {
-  if (Problems problems = check(spec); !problems.empty()) throw InputError(std::move(problems));
+StampingResult run_stamping(const StampingSpec& spec, const mesoscale::FabricProperties& fabric,
+                            const friction::Model& friction, const StampingObserver& observe) {
+  Problems problems = check(spec);
+  const Problems of_fabric = mesoscale::check(fabric);
+  problems.insert(problems.end(), of_fabric.begin(), of_fabric.end());
+  if (!problems.empty()) throw InputError(std::move(problems));
   return Run(spec, fabric, friction, observe).result();
 }
 

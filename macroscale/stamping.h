@@ -19,26 +19,27 @@ struct BlankSpec {
   int plies = 1;
 };
 
-struct PunchSpec {  ///< hemisphere with its apex down and a cylinder above
+struct PunchSpec {        ///< hemisphere with its apex down and a cylinder above
   double radius = 0.070;  ///< [m]
 };
-struct DieSpec {  ///< plate with a round opening and a filleted edge
+struct DieSpec {                  ///< plate with a round opening and a filleted edge
   double opening_radius = 0.072;  ///< [m]
   double fillet = 0.020;          ///< [m]
 };
-struct BinderSpec {  ///< flat ring under force, free to move in z
+struct BinderSpec {             ///< flat ring under force, free to move in z
   double inner_radius = 0.092;  ///< [m]
   double edge_fillet = 2e-3;    ///< [m], keeps contact smooth where fabric leaves it
   double mass = 20.0;           ///< [kg]
 };
 
 struct ProcessSpec {
-  double stroke = 0.070;       ///< [m]
-  double time = 0.43;          ///< of the stroke at speed_scale 1 [s]
-  double slow_down = 0.01;     ///< the punch stops linearly over this last part [s] (paper, section 3.2.2)
-  double speed_scale = 1.0;    ///< 0.5 = half speed [-]
-  int steps = 100;             ///< equal in stroke
-  double binder_force = 650.0; ///< [N]
+  double stroke = 0.070;  ///< [m]
+  double time = 0.43;     ///< of the stroke at speed_scale 1 [s]
+  double slow_down =
+      0.0;  ///< the punch stops linearly over this last part [s]; 0.01 in the paper (section 3.2.2)
+  double speed_scale = 1.0;           ///< 0.5 = half speed [-]
+  int steps = 100;                    ///< equal in stroke
+  double binder_force = 650.0;        ///< [N]
   double tool_temperature = 358.15;   ///< [K]
   double blank_temperature = 453.15;  ///< [K]
 };
@@ -64,53 +65,56 @@ struct StampingSpec {
 
 /// One accepted step: a row of history.csv. Energies are cumulative since the punch touched [J].
 struct HistoryRow {
-  double time = 0.0;                ///< [s]
-  double punch_displacement = 0.0;  ///< [m], downwards positive
+  double time = 0.0;                                              ///< [s]
+  double punch_displacement = 0.0;                                ///< [m], downwards positive
   double punch_force = 0.0, die_force = 0.0, binder_force = 0.0;  ///< [N]; punch: pushing positive
-  double draw_in_max = 0.0;         ///< along the outline [m]
-  double shear_angle_max = 0.0;     ///< [rad]
-  double tow_strain_max = 0.0;      ///< [-]
+  double draw_in_max = 0.0;                                       ///< along the outline [m]
+  double shear_angle_max = 0.0;                                   ///< [rad]
+  double tow_strain_max = 0.0;                                    ///< [-]
   int newton_iterations = 0;
   int lag_iterations = 0;
   double work_punch = 0.0, work_binder = 0.0;
-  double energy_tow = 0.0, energy_shear = 0.0, energy_bending = 0.0, energy_twist = 0.0, energy_compaction = 0.0;
+  double energy_tow = 0.0, energy_shear = 0.0, energy_bending = 0.0, energy_twist = 0.0,
+         energy_compaction = 0.0;
   double energy_kinetic = 0.0;
   double friction_punch = 0.0, friction_die = 0.0, friction_binder = 0.0;
   double dissipation_shear_rate = 0.0, dissipation_artefact = 0.0, dissipation_numerical = 0.0;
-  double ledger_residual = 0.0;     ///< what the columns above leave over [J]
-  double force_balance = 0.0;       ///< |sum F - sum m a| [N]
+  double ledger_residual = 0.0;        ///< what the columns above leave over [J]
+  double force_balance = 0.0;          ///< |sum F - sum m a| [N]
   double friction_work_outside = 0.0;  ///< done outside the calibrated box [J]
 };
 
 /// The blank at one instant, for pictures and files. Nodes row-major: index = i * (nv + 1) + j, i along warp.
 struct BlankState {
-  int nu = 0, nv = 0;                       ///< cells along warp and weft
-  std::vector<std::array<double, 2>> reference;  ///< [m]
-  std::vector<std::array<double, 3>> position;   ///< [m]
-  std::vector<std::array<double, 3>> velocity;   ///< [m/s]
-  std::vector<std::array<int, 4>> quads;    ///< (i,j) (i+1,j) (i+1,j+1) (i,j+1)
-  std::vector<double> shear_angle;          ///< per node, signed [rad]
+  int nu = 0, nv = 0;                             ///< cells along warp and weft
+  std::vector<std::array<double, 2>> reference;   ///< [m]
+  std::vector<std::array<double, 3>> position;    ///< [m]
+  std::vector<std::array<double, 3>> velocity;    ///< [m/s]
+  std::vector<std::array<int, 4>> quads;          ///< (i,j) (i+1,j) (i+1,j+1) (i,j+1)
+  std::vector<double> shear_angle;                ///< per node, signed [rad]
   std::vector<std::array<double, 2>> tow_strain;  ///< per node {warp, weft} [-]
-  std::vector<double> pressure, slip_speed, friction_coefficient, hersey;  ///< per node, of the face that presses most
+  std::vector<double> pressure, slip_speed, friction_coefficient,
+      hersey;  ///< per node, of the face that presses most
   double time = 0.0, punch_displacement = 0.0, binder_position = 0.0;
 };
 
 struct StampingSummary {
-  double peak_punch_force = 0.0;        ///< [N]
-  double shear_angle_max = 0.0;         ///< [rad]
-  double draw_in_max = 0.0;             ///< [m]
-  double energy_residual_max = 0.0;     ///< [-]
-  double force_balance_residual_max = 0.0;  ///< [-]
+  double peak_punch_force = 0.0;             ///< [N]
+  double shear_angle_max = 0.0;              ///< [rad]
+  double draw_in_max = 0.0;                  ///< [m]
+  double energy_residual_max = 0.0;          ///< [-]
+  double force_balance_residual_max = 0.0;   ///< [-]
   double numerical_dissipation_share = 0.0;  ///< of the punch work [-]
-  double twist_share = 0.0;             ///< largest share of the twist control in the stored energy [-]
-  double symmetry_gap_shear = 0.0;      ///< 8 symmetries of the square, share of the maximum [-]; < 0: not a 0/90 square
+  double twist_share = 0.0;                  ///< largest share of the twist control in the stored energy [-]
+  double symmetry_gap_shear =
+      0.0;  ///< 8 symmetries of the square, share of the maximum [-]; < 0: not a 0/90 square
   double symmetry_gap_draw_in = 0.0;
-  double friction_work_outside = 0.0;   ///< share of friction work outside the calibrated box [-]
-  bool falling_branch = false;          ///< the law fell with speed somewhere: the solution may not be unique
+  double friction_work_outside = 0.0;  ///< share of friction work outside the calibrated box [-]
+  bool falling_branch = false;         ///< the law fell with speed somewhere: the solution may not be unique
   int nodes = 0, steps = 0, rejected_steps = 0, newton_iterations = 0;
-  std::array<double, 2> spacing{};      ///< as used [m]
+  std::array<double, 2> spacing{};  ///< as used [m]
   bool completed = false;
-  std::string failure;                  ///< why it stopped, when not completed
+  std::string failure;  ///< why it stopped, when not completed
 };
 
 struct StampingResult {
@@ -125,7 +129,7 @@ using StampingObserver = std::function<void(int step, int steps, const HistoryRo
 Problems check(const StampingSpec& spec);
 
 /// Closes the binder, then drives the punch. Not finishing is a result (`summary.failure` says why).
-/// @throws InputError      if check(spec) finds something
+/// @throws InputError      if check(spec) or check(fabric) finds something
 /// @throws NumericalError  if a quantity is not finite; names node, step and quantity
 StampingResult run_stamping(const StampingSpec& spec, const mesoscale::FabricProperties& fabric,
                             const friction::Model& friction, const StampingObserver& observe = {});

@@ -16,8 +16,8 @@ using Eigen::Matrix3d;
 using Eigen::Vector3d;
 using Eigen::VectorXd;
 
-// Resistance to twist of the sheet, as a share of the mean bending stiffness. Tow bending alone leaves the saddle
-// w = x y without energy; the share is small, and reports print how much energy it took.
+// Resistance to twist of the sheet, as a share of the mean bending stiffness. Tow bending alone leaves the
+// saddle w = x y without energy; the share is small, and reports print how much energy it took.
 constexpr double twist_share = 0.1;
 
 // Fixed pieces and a fixed order of summation: the same bytes on one thread or many.
@@ -39,7 +39,9 @@ void for_each(int n, const Body& body) {
   });
 }
 
-Vector3d node_of(const VectorXd& x, int i) { return x.segment<3>(3 * i); }
+Vector3d node_of(const VectorXd& x, int i) {
+  return x.segment<3>(3 * i);
+}
 
 Vector3d second_difference(const VectorXd& x, const TowTriple& t) {
   return node_of(x, t.before) - 2.0 * node_of(x, t.middle) + node_of(x, t.after);
@@ -72,7 +74,8 @@ double System::bending_stiffness(const TowTriple& t) const {
 }
 
 double System::twist_stiffness() const {
-  const double mean = 0.5 * (scene_.fabric->bending[0](scene_.blank_temperature) + scene_.fabric->bending[1](scene_.blank_temperature));
+  const double mean = 0.5 * (scene_.fabric->bending[0](scene_.blank_temperature) +
+                             scene_.fabric->bending[1](scene_.blank_temperature));
   return twist_share * mean / (scene_.blank.spacing[0] * scene_.blank.spacing[1]);
 }
 
@@ -95,7 +98,8 @@ CornerLaw System::corner_law(const StepData& step) const {
   law.area = scene_.blank.corner_area();
   law.length_warp = scene_.blank.spacing[0];
   law.length_weft = scene_.blank.spacing[1];
-  if (scene_.shear_rate) law.rate_consistency = scene_.fabric->shear_rate.consistency_at(scene_.blank_temperature);
+  if (scene_.shear_rate)
+    law.rate_consistency = scene_.fabric->shear_rate.consistency_at(scene_.blank_temperature);
   law.rate_index = scene_.fabric->shear_rate.index;
   law.time_step = step.dt;
   return law;
@@ -123,8 +127,9 @@ PotentialTerms System::potential(const StepData& step, const VectorXd& x) const 
           for (int k = 0; k < 4; ++k) {
             const Corner& c = corners[k];
             const Vector3d origin = node_of(x, c.node);
-            const CornerEnergy w = corner_energy(law, node_of(x, c.along_warp) - origin, node_of(x, c.along_weft) - origin,
-                                                 step.start->corner_angle[4 * q + k]);
+            const CornerEnergy w =
+                corner_energy(law, node_of(x, c.along_warp) - origin, node_of(x, c.along_weft) - origin,
+                              step.start->corner_angle[4 * q + k]);
             s.tow += w.tension;
             s.shear += w.shear;
             s.rate += w.rate;
@@ -146,19 +151,23 @@ PotentialTerms System::potential(const StepData& step, const VectorXd& x) const 
     return 0.5 * bending_stiffness(blank.triples[t]) * second_difference(x, blank.triples[t]).squaredNorm();
   });
   const double twist = twist_stiffness();
-  e.twist = ordered_sum(quads, [&](int q) { return 0.5 * twist * twist_of(x, blank.quads[q]).squaredNorm(); });
+  e.twist =
+      ordered_sum(quads, [&](int q) { return 0.5 * twist * twist_of(x, blank.quads[q]).squaredNorm(); });
 
   const int tools = static_cast<int>(scene_.tools.size());
   for (int k = 0; k < tools; ++k) {
     e.compaction += ordered_sum(blank.nodes(), [&](int i) {
-      return blank.node_area[i] * normal_contact(compaction_, tool_distance(step, x, k, i).distance, half_thickness()).energy;
+      return blank.node_area[i] *
+             normal_contact(compaction_, tool_distance(step, x, k, i).distance, half_thickness()).energy;
     });
     if (body_[k] >= 0) e.loads += scene_.tools[k].force * x[body_[k]];
   }
-  for (std::size_t k = 0; k < scene_.load.size(); ++k) e.loads -= scene_.load[k] * x[static_cast<Eigen::Index>(k)];
+  for (std::size_t k = 0; k < scene_.load.size(); ++k)
+    e.loads -= scene_.load[k] * x[static_cast<Eigen::Index>(k)];
   if (scene_.stabilisation > 0.0)
     e.stabilisation = ordered_sum(blank.nodes(), [&](int i) {
-      return 0.5 * scene_.stabilisation * blank.node_area[i] / step.dt * (node_of(x, i) - step.start->node(i)).squaredNorm();
+      return 0.5 * scene_.stabilisation * blank.node_area[i] / step.dt *
+             (node_of(x, i) - step.start->node(i)).squaredNorm();
     });
   return e;
 }
@@ -171,7 +180,8 @@ double System::friction_difference(const StepData& step, const VectorXd& from, c
     sum += ordered_sum(scene_.blank.nodes(), [&](int i) {
       const FrictionPoint& point = step.friction[k][i];
       if (point.load == 0.0) return 0.0;
-      return friction_power_difference(settings, point, slip_velocity(point, relative_velocity(step, from, k, i)).norm(),
+      return friction_power_difference(settings, point,
+                                       slip_velocity(point, relative_velocity(step, from, k, i)).norm(),
                                        slip_velocity(point, relative_velocity(step, to, k, i)).norm());
     });
   return step.dt * sum;
@@ -191,8 +201,9 @@ VectorXd System::full_gradient(const StepData& step, const VectorXd& x) const {
       for (int k = 0; k < 4; ++k) {
         const Corner& c = corners[k];
         const Vector3d origin = node_of(x, c.node);
-        const CornerGradient w = corner_gradient(law, node_of(x, c.along_warp) - origin, node_of(x, c.along_weft) - origin,
-                                                 step.start->corner_angle[4 * q + k]);
+        const CornerGradient w =
+            corner_gradient(law, node_of(x, c.along_warp) - origin, node_of(x, c.along_weft) - origin,
+                            step.start->corner_angle[4 * q + k]);
         const Vector3d a = w.a(), b = w.b();
         g.segment<3>(3 * c.along_warp) += a;
         g.segment<3>(3 * c.along_weft) += b;
@@ -236,7 +247,8 @@ VectorXd System::full_gradient(const StepData& step, const VectorXd& x) const {
   for (std::size_t k = 0; k < scene_.load.size(); ++k) g[static_cast<Eigen::Index>(k)] -= scene_.load[k];
   if (scene_.stabilisation > 0.0)
     for (int i = 0; i < blank.nodes(); ++i)
-      g.segment<3>(3 * i) += scene_.stabilisation * blank.node_area[i] / step.dt * (node_of(x, i) - step.start->node(i));
+      g.segment<3>(3 * i) +=
+          scene_.stabilisation * blank.node_area[i] / step.dt * (node_of(x, i) - step.start->node(i));
   return g;
 }
 
@@ -248,7 +260,8 @@ VectorXd System::gradient(const StepData& step, const VectorXd& x) const {
 }
 
 int System::block(int row_node, int column_node) const {
-  const auto begin = block_row_.begin() + block_start_[column_node], end = block_row_.begin() + block_start_[column_node + 1];
+  const auto begin = block_row_.begin() + block_start_[column_node],
+             end = block_row_.begin() + block_start_[column_node + 1];
   return static_cast<int>(std::lower_bound(begin, end, row_node) - block_row_.begin());
 }
 
@@ -344,10 +357,15 @@ void System::add_corners(const StepData& step, const VectorXd& x, Filter filter)
       for (int k = 0; k < 4; ++k) {
         const Corner& c = corners[k];
         const Vector3d origin = node_of(x, c.node);
-        const CornerHessian h = corner_hessian(law, node_of(x, c.along_warp) - origin, node_of(x, c.along_weft) - origin,
-                                               step.start->corner_angle[4 * q + k], filter);
-        const std::array<Matrix3d, 6> part = {h.aa + h.ab + h.ab.transpose() + h.bb, h.aa, h.bb, -(h.aa + h.ab),
-                                              -(h.ab.transpose() + h.bb), h.ab};
+        const CornerHessian h =
+            corner_hessian(law, node_of(x, c.along_warp) - origin, node_of(x, c.along_weft) - origin,
+                           step.start->corner_angle[4 * q + k], filter);
+        const std::array<Matrix3d, 6> part = {h.aa + h.ab + h.ab.transpose() + h.bb,
+                                              h.aa,
+                                              h.bb,
+                                              -(h.aa + h.ab),
+                                              -(h.ab.transpose() + h.bb),
+                                              h.ab};
         const CornerSlots& slots = corner_slots_[4 * q + k];
         for (std::size_t p = 0; p < part.size(); ++p) {
           Eigen::Map<Matrix3d> target(&blocks_[9 * slots.slot[p]]);
@@ -375,7 +393,8 @@ void System::add_contact(const StepData& step, const VectorXd& x, Filter filter)
       if (filter == Filter::none) stiffness -= blank.node_area[i] * contact.pressure * d.curvature;
       if (rubs && step.friction[k][i].load > 0.0)
         stiffness += friction_tangent(settings, step.friction[k][i], relative_velocity(step, x, k, i),
-                                      filter == Filter::positive) / step.dt;
+                                      filter == Filter::positive) /
+                     step.dt;
       Eigen::Map<Matrix3d>(&blocks_[9 * block_start_[i]]) += stiffness;
       if (loaded)
         for (int c = 0; c < 3; ++c) (*row)[3 * i + c] = -stiffness(2, c);
@@ -392,7 +411,8 @@ void System::assemble(const StepData& step, const VectorXd& x, Filter filter, do
   blocks_ = constant_;
   const double inverse_dt2 = 1.0 / (step.dt * step.dt);
   for_each(scene_.blank.nodes(), [&](int i) {
-    const double diagonal = mass_[3 * i] * inverse_dt2 + scene_.stabilisation * scene_.blank.node_area[i] / step.dt;
+    const double diagonal =
+        mass_[3 * i] * inverse_dt2 + scene_.stabilisation * scene_.blank.node_area[i] / step.dt;
     for (int c = 0; c < 3; ++c) blocks_[9 * block_start_[i] + 4 * c] += diagonal;
   });
   add_corners(step, x, filter);

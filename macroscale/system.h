@@ -15,11 +15,11 @@ namespace heddle::macroscale {
 
 /// What is held while one time step is solved: where it starts, its length, the frozen friction loads.
 struct StepData {
-  double dt = 0.0;                    ///< [s]
+  double dt = 0.0;  ///< [s]
   const State* start = nullptr;
-  Eigen::VectorXd target;             ///< x_n + dt v_n: where inertia alone would go [m]
-  std::vector<double> tool_z;         ///< end positions of fixed and driven tools [m]
-  bool frictionless = false;          ///< friction switched off for this step (closing the binder)
+  Eigen::VectorXd target;      ///< x_n + dt v_n: where inertia alone would go [m]
+  std::vector<double> tool_z;  ///< end positions of fixed and driven tools [m]
+  bool frictionless = false;   ///< friction switched off for this step (closing the binder)
   /// Per tool, per node: the lagged friction point (load 0 = no friction).
   std::vector<std::vector<FrictionPoint>> friction;
 };
@@ -28,7 +28,9 @@ struct StepData {
 struct PotentialTerms {
   double inertia = 0.0, tow = 0.0, shear = 0.0, rate = 0.0, bending = 0.0, twist = 0.0, compaction = 0.0;
   double loads = 0.0, stabilisation = 0.0;
-  double total() const { return inertia + tow + shear + rate + bending + twist + compaction + loads + stabilisation; }
+  double total() const {
+    return inertia + tow + shear + rate + bending + twist + compaction + loads + stabilisation;
+  }
 };
 
 /// The discrete incremental potential of one scene: value, gradient, Hessian, on a fixed pattern.
@@ -42,7 +44,8 @@ class System {
 
   PotentialTerms potential(const StepData& step, const Eigen::VectorXd& x) const;
   /// Change of the friction potential between two positions [J].
-  double friction_difference(const StepData& step, const Eigen::VectorXd& from, const Eigen::VectorXd& to) const;
+  double friction_difference(const StepData& step, const Eigen::VectorXd& from,
+                             const Eigen::VectorXd& to) const;
   /// dE/dx; at held unknowns it is the force their supports must give [N].
   Eigen::VectorXd full_gradient(const StepData& step, const Eigen::VectorXd& x) const;
   /// dE/dx with the entries of held unknowns set to zero.
@@ -78,22 +81,23 @@ class System {
 
   const Scene& scene_;
   int size_ = 0;
-  Curve compaction_;                     ///< of one face at gamma = 0
-  std::vector<double> mass_;             ///< per unknown [kg]
-  std::vector<int> body_;                ///< per tool: its unknown, or -1
+  Curve compaction_;          ///< of one face at gamma = 0
+  std::vector<double> mass_;  ///< per unknown [kg]
+  std::vector<int> body_;     ///< per tool: its unknown, or -1
 
   // Blocks of the lower triangle by node columns: rows >= column, 3 x 3 each, column-major.
   std::vector<int> block_start_, block_row_;
-  std::vector<double> constant_;         ///< bending and twist
+  std::vector<double> constant_;  ///< bending and twist
   std::vector<double> blocks_;
   std::vector<std::vector<double>> body_row_;  ///< coupling of each loaded tool with every node unknown
   std::vector<double> body_diagonal_;
   struct CornerSlots {
-    std::array<int, 6> slot;     ///< cc, aa, bb, ac, bc, ab
+    std::array<int, 6> slot;      ///< cc, aa, bb, ac, bc, ab
     std::array<bool, 6> flipped;  ///< stored transposed because the row must be the larger node
   };
-  std::vector<CornerSlots> corner_slots_;      ///< 4 a quad
-  std::array<std::vector<int>, 4> colours_;    ///< quads that share no node, assembled in parallel without locks
+  std::vector<CornerSlots> corner_slots_;  ///< 4 a quad
+  std::array<std::vector<int>, 4>
+      colours_;  ///< quads that share no node, assembled in parallel without locks
   std::unique_ptr<SparseSolver> solver_;
 };
 

@@ -10,7 +10,9 @@ namespace {
 using Eigen::Matrix3d;
 using Eigen::Vector3d;
 
-Distance flat(double distance, const Vector3d& normal) { return {distance, normal, Matrix3d::Zero()}; }
+Distance flat(double distance, const Vector3d& normal) {
+  return {distance, normal, Matrix3d::Zero()};
+}
 
 // Distance to a sphere or, with the axis taken out, to a cylinder: curvature (I - n n^T - axis axis^T) / r.
 Distance round(const Vector3d& from_centre, double radius, const Vector3d& axis) {
@@ -46,7 +48,9 @@ Distance evaluate_up(const RingShape& ring, const Vector3d& x) {
   // On the axis every direction points to the wall; take x.
   const Vector3d outward = r > 1e-12 ? Vector3d(x.x() / r, x.y() / r, 0.0) : Vector3d::UnitX();
   const Vector3d around(-outward.y(), outward.x(), 0.0);
-  const auto hoop = [&](double normal_r) -> Matrix3d { return (normal_r / std::max(r, 1e-12)) * around * around.transpose(); };
+  const auto hoop = [&](double normal_r) -> Matrix3d {
+    return (normal_r / std::max(r, 1e-12)) * around * around.transpose();
+  };
   if (x.z() <= centre_z) return {ring.opening_radius - r, -outward, hoop(-1.0)};
   const double dr = r - centre_r, dz = x.z() - centre_z;
   const double rho = std::max(std::hypot(dr, dz), 1e-12);

@@ -7,11 +7,12 @@
 
 namespace heddle::macroscale {
 
-/// Signed distance to a rigid surface (positive outside the tool), its unit normal (gradient) and its Hessian.
+/// Signed distance to a rigid surface (positive outside the tool), its unit normal (gradient) and its
+/// Hessian.
 struct Distance {
-  double distance;             ///< [m]
-  Eigen::Vector3d normal;      ///< away from the tool
-  Eigen::Matrix3d curvature;   ///< second derivative of the distance [1/m]
+  double distance;            ///< [m]
+  Eigen::Vector3d normal;     ///< away from the tool
+  Eigen::Matrix3d curvature;  ///< second derivative of the distance [1/m]
 };
 
 /// Half space below the plane through `point` with outward normal `normal` (unit).
@@ -45,8 +46,8 @@ using Shape = std::variant<PlaneShape, CylinderShape, HemisphereShape, RingShape
 
 Distance distance(const Shape& shape, const Eigen::Vector3d& x);
 
-/// How a tool moves: along z only. `driven` follows a prescribed position, `loaded` is a rigid body pressed down by
-/// a constant force.
+/// How a tool moves: along z only. `driven` follows a prescribed position, `loaded` is a rigid body pressed
+/// down by a constant force.
 enum class Motion { fixed, driven, loaded };
 
 enum class Role { punch, die, binder };

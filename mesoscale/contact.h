@@ -47,7 +47,7 @@ struct ContactGrid {
   double lowest_pressure =
       10.0;  ///< of the area table [Pa]; below, phi ~ sqrt(P), which the held log slope follows
   double highest_pressure = 6e6;  ///< [Pa]
-  int pressures = 65;             ///< even in ln P
+  int pressures = 57;             ///< even in ln P
   int depths = 128;               ///< even in d, from 0
 };
 ContactTables contact_tables(const FabricGeometry& fabric, const CompactionLaw& law,

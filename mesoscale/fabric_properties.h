@@ -36,9 +36,8 @@ struct ContactArea {
   };
   /// @param pressure  nominal pressure [Pa], > 0
   /// @param shear_angle  trellis shear angle [rad], sign ignored
-  /// @param sliding_angle  slip direction against the warp [rad]. The area does not depend on it (an area has
-  /// no
-  ///        direction); drag does, and the argument is here so that such a table can take this place.
+  /// @param sliding_angle  slip direction against the warp [rad]. An area has no direction, so it is
+  ///        not used; drag depends on it, and the argument is here so that such a table can take this place.
   Value evaluate(double pressure, double shear_angle, double sliding_angle = 0.0) const;
 };
 
@@ -60,7 +59,9 @@ struct FabricProperties {
   Curve shear_stress;      ///< dPsi/ds [N/m] against s = sin(gamma) in [0, 1); odd in s
   ShearRate shear_rate;
   std::array<Curve, 2> bending;  ///< B [N m] against temperature [K], {along warp, along weft}
-  CurveFamily compaction;  ///< pressure [Pa] against approach d [m] of ONE face; h = H - 2 d; parameter gamma
+  /// Pressure [Pa, per CURRENT area of the sheared fabric] against approach d [m] of ONE face; h = H - 2 d;
+  /// parameter: trellis shear angle [rad]. Zero and flat at d = 0.
+  CurveFamily compaction;
   ContactArea contact;
   Provenance provenance;
 };

@@ -45,7 +45,8 @@ std::unique_ptr<tbb::global_control> limit_threads(int threads) {
 
 void refuse_resume(const RunOptions& options) {
   if (options.resume)
-    throw InputError({{"run.resume", "--resume", "", "is not in this version", "Run the case again without it."}});
+    throw InputError(
+        {{"run.resume", "--resume", "", "is not in this version", "Run the case again without it."}});
 }
 
 std::vector<double> contact_pressures() {
@@ -60,17 +61,22 @@ void run_cell(const Case& a_case, RunFolder& folder, Findings& findings) {
   findings.pictures = weave_pictures(*a_case.cell);
   const mesoscale::FabricProperties& fabric = findings.cell->fabric;
   folder.write("mesoscale/fabric.json", fabric_json(fabric));
-  folder.write("mesoscale/contact.csv", contact_csv(fabric.contact, contact_pressures(), fabric.contact.log_fraction.parameter()));
+  folder.write("mesoscale/contact.csv",
+               contact_csv(fabric.contact, contact_pressures(), fabric.contact.log_fraction.parameter()));
   folder.write("mesoscale/tows.stl", tows_stl(findings.pictures->tows));
   const auto& s = findings.cell->summary;
-  folder.log(fmt::format("mesoscale: {:.4f} kg/m2, crimp {:.4f} %, gap closure {:.3f} deg, contact fraction {:.3f} % at 0.05 mm", s.areal_density,
-                         100.0 * s.crimp[0], degrees * s.gap_closure_angle, 100.0 * s.contact_area_fraction));
+  folder.log(fmt::format(
+      "mesoscale: {:.4f} kg/m2, crimp {:.4f} %, gap closure {:.3f} deg, contact fraction {:.3f} % at 0.05 mm",
+      s.areal_density, 100.0 * s.crimp[0], degrees * s.gap_closure_angle, 100.0 * s.contact_area_fraction));
 }
 
 void run_friction(const Case& a_case, RunFolder& folder, Findings& findings) {
   if (!a_case.friction) return;
-  findings.friction = folder.stage("friction", [&] { return run_friction_stage(a_case, findings.cell ? &findings.cell->fabric : nullptr); });
-  if (!findings.friction->test.empty()) folder.write("friction/friction_test.csv", friction_test_csv(findings.friction->test));
+  findings.friction = folder.stage("friction", [&] {
+    return run_friction_stage(a_case, findings.cell ? &findings.cell->fabric : nullptr);
+  });
+  if (!findings.friction->test.empty())
+    folder.write("friction/friction_test.csv", friction_test_csv(findings.friction->test));
   folder.write("friction/curve.csv", curve_csv(findings.friction->curve));
   for (const std::string& note : findings.friction->notes) folder.log("friction: " + note);
 }
@@ -78,7 +84,8 @@ void run_friction(const Case& a_case, RunFolder& folder, Findings& findings) {
 // Writes frames of the blank as the run goes, so that a run that fails has left its history.
 class BlankSeries {
  public:
-  BlankSeries(const RunFolder& folder, int steps) : folder_(folder), every_(std::max(1, steps / frames)), steps_(steps) {}
+  BlankSeries(const RunFolder& folder, int steps)
+      : folder_(folder), every_(std::max(1, steps / frames)), steps_(steps) {}
 
   void add(int step, const macroscale::BlankState& blank) {
     if (step % every_ != 0 && step != steps_) return;
@@ -99,14 +106,17 @@ void run_stamping(const Case& a_case, RunFolder& folder, Findings& findings, boo
   const int steps = a_case.stamping->process.steps;
   Progress progress("stamping", steps, progress_style_of_standard_error(quiet), std::cerr);
   BlankSeries series(folder, steps);
-  const auto observe = [&](int step, int, const macroscale::HistoryRow& row, const macroscale::BlankState& blank) {
+  const auto observe = [&](int step, int, const macroscale::HistoryRow& row,
+                           const macroscale::BlankState& blank) {
     series.add(step, blank);
-    const std::string note = fmt::format("punch {:.1f} mm, {:.0f} N", 1e3 * row.punch_displacement, row.punch_force);
+    const std::string note =
+        fmt::format("punch {:.1f} mm, {:.0f} N", 1e3 * row.punch_displacement, row.punch_force);
     progress.update(step, note);
     folder.log(fmt::format("stamping: step {}: {}, {} Newton iterations", step, note, row.newton_iterations));
   };
   findings.stamping = folder.stage("macroscale", [&] {
-    return macroscale::run_stamping(*a_case.stamping, findings.cell->fabric, findings.friction->model, observe);
+    return macroscale::run_stamping(*a_case.stamping, findings.cell->fabric, findings.friction->model,
+                                    observe);
   });
   progress.finish();
   folder.write("macroscale/history.csv", history_csv(findings.stamping->history));
@@ -119,9 +129,11 @@ void run_stamping(const Case& a_case, RunFolder& folder, Findings& findings, boo
 std::string description_of(const Case& a_case) {
   if (!a_case.stamping) return a_case.cell ? "One unit cell of the weave." : "The friction test.";
   const auto& s = *a_case.stamping;
-  return fmt::format("A {:.0f} x {:.0f} mm blank of {} weave stamped {:.0f} mm deep into a hemisphere of {:.0f} mm radius in {:.2f} s.",
-                     1e3 * s.blank.size[0], 1e3 * s.blank.size[1], a_case.cell->weave.pattern, 1e3 * s.process.stroke, 1e3 * s.punch.radius,
-                     s.process.time / s.process.speed_scale);
+  return fmt::format(
+      "A {:.0f} x {:.0f} mm blank of {} weave stamped {:.0f} mm deep into a hemisphere of {:.0f} mm radius "
+      "in {:.2f} s.",
+      1e3 * s.blank.size[0], 1e3 * s.blank.size[1], a_case.cell->weave.pattern, 1e3 * s.process.stroke,
+      1e3 * s.punch.radius, s.process.time / s.process.speed_scale);
 }
 
 std::vector<Condition> conditions_of(const Case& a_case) {
@@ -130,8 +142,10 @@ std::vector<Condition> conditions_of(const Case& a_case) {
   return {{"Binder force", fmt::format("{:g} N", s.process.binder_force)},
           {"Tool temperature", fmt::format("{:g} degC", s.process.tool_temperature - 273.15)},
           {"Blank temperature", fmt::format("{:g} degC", s.process.blank_temperature - 273.15)},
-          {"Stroke", fmt::format("{:g} mm in {:g} s", 1e3 * s.process.stroke, s.process.time / s.process.speed_scale)},
-          {"Blank", fmt::format("{:g} x {:g} mm, warp at {:g} deg", 1e3 * s.blank.size[0], 1e3 * s.blank.size[1], degrees * s.blank.orientation)},
+          {"Stroke",
+           fmt::format("{:g} mm in {:g} s", 1e3 * s.process.stroke, s.process.time / s.process.speed_scale)},
+          {"Blank", fmt::format("{:g} x {:g} mm, warp at {:g} deg", 1e3 * s.blank.size[0],
+                                1e3 * s.blank.size[1], degrees * s.blank.orientation)},
           {"Steps", fmt::format("{} of equal stroke", s.process.steps)}};
 }
 
@@ -147,7 +161,8 @@ HeightField report_height(const mesoscale::HeightField& h) {
 std::vector<SectionLine> report_section(const std::vector<mesoscale::Outline>& outlines) {
   std::vector<SectionLine> lines;
   for (const auto& outline : outlines)
-    lines.push_back({outline.tow == mesoscale::TowDirection::warp ? SectionKind::warp : SectionKind::weft, outline.points});
+    lines.push_back({outline.tow == mesoscale::TowDirection::warp ? SectionKind::warp : SectionKind::weft,
+                     outline.points});
   return lines;
 }
 
@@ -182,7 +197,8 @@ void write_findings(const Case& a_case, RunFolder& folder, const Findings& findi
   SummaryRecord record;
   if (findings.cell) record.cell = findings.cell->summary;
   if (findings.cell && a_case.stamping)
-    record.contact_area_fraction_binder = findings.cell->fabric.contact.evaluate(mean_binder_pressure(*a_case.stamping), 0.0).fraction;
+    record.contact_area_fraction_binder =
+        findings.cell->fabric.contact.evaluate(mean_binder_pressure(*a_case.stamping), 0.0).fraction;
   if (findings.stamping) record.stamping = findings.stamping->summary;
   folder.write("summary.json", summary_json(record));
   folder.write("report.html", report_html(report_input(a_case, findings)));
@@ -193,26 +209,34 @@ void print_cell(const mesoscale::CellSummary& s) {
   fmt::print("areal density        {:.4f} kg/m^2\n", s.areal_density);
   fmt::print("crimp                {:.3f} % warp, {:.3f} % weft\n", 100.0 * s.crimp[0], 100.0 * s.crimp[1]);
   fmt::print("gap closure          {:.2f} deg\n", degrees * s.gap_closure_angle);
-  fmt::print("locking              {:.1f} deg (shear tangent 10 times that at 20 deg)\n", degrees * s.locking_angle);
+  fmt::print("locking              {:.1f} deg (shear tangent 10 times that at 20 deg)\n",
+             degrees * s.locking_angle);
   fmt::print("contact fraction     {:.2f} % of one face at 0.05 mm\n", 100.0 * s.contact_area_fraction);
   fmt::print("tow fibre fraction   {:.3f}\n", s.tow_fibre_volume_fraction);
 }
 
 void print_friction(const FrictionStage& stage) {
-  fmt::print("{:<24}{:>9}{:>12}{:>11}{:>9}{:>12}{:>9}\n", "pull", "mu", "force N", "measured", "error", "paper", "error");
-  const auto percent = [](const std::optional<double>& e) { return e ? fmt::format("{:+.1f} %", 100.0 * *e) : std::string(); };
-  const auto force = [](const std::optional<double>& f) { return f ? fmt::format("{:.0f}", *f) : std::string(); };
+  fmt::print("{:<24}{:>9}{:>12}{:>11}{:>9}{:>12}{:>9}\n", "pull", "mu", "force N", "measured", "error",
+             "paper", "error");
+  const auto percent = [](const std::optional<double>& e) {
+    return e ? fmt::format("{:+.1f} %", 100.0 * *e) : std::string();
+  };
+  const auto force = [](const std::optional<double>& f) {
+    return f ? fmt::format("{:.0f}", *f) : std::string();
+  };
   double square = 0.0, paper_square = 0.0;
   int measured = 0, of_paper = 0;
   for (const FrictionTestRow& row : stage.test) {
     const auto error = error_of_model(row), paper = error_of_paper(row);
-    fmt::print("{:<24}{:>9.4f}{:>12.1f}{:>11}{:>9}{:>12}{:>9}\n", row.name, row.friction_coefficient, row.pull_force, force(row.measured_force),
-               percent(error), force(row.paper_force), percent(paper));
+    fmt::print("{:<24}{:>9.4f}{:>12.1f}{:>11}{:>9}{:>12}{:>9}\n", row.name, row.friction_coefficient,
+               row.pull_force, force(row.measured_force), percent(error), force(row.paper_force),
+               percent(paper));
     if (error) square += *error * *error, ++measured;
     if (paper) paper_square += *paper * *paper, ++of_paper;
   }
   if (measured > 0) fmt::print("RMS error {:.2f} %", 100.0 * std::sqrt(square / measured));
-  if (of_paper > 0) fmt::print(", the paper's own model {:.2f} %", 100.0 * std::sqrt(paper_square / of_paper));
+  if (of_paper > 0)
+    fmt::print(", the paper's own model {:.2f} %", 100.0 * std::sqrt(paper_square / of_paper));
   if (measured > 0) fmt::print("\n");
   for (const std::string& note : stage.notes) fmt::print("{}\n", note);
 }
@@ -223,8 +247,8 @@ void print_stamping(const macroscale::StampingSummary& s) {
   fmt::print("largest draw-in      {:.2f} mm\n", 1e3 * s.draw_in_max);
   fmt::print("energy residual      {:.2e} of the punch work\n", s.energy_residual_max);
   fmt::print("force balance        {:.2e} of the punch force\n", s.force_balance_residual_max);
-  fmt::print("steps                {} ({} tried again with half the step), {} Newton iterations, {} nodes\n", s.steps, s.rejected_steps,
-             s.newton_iterations, s.nodes);
+  fmt::print("steps                {} ({} tried again with half the step), {} Newton iterations, {} nodes\n",
+             s.steps, s.rejected_steps, s.newton_iterations, s.nodes);
 }
 
 enum class Part { all, weave, friction };
@@ -235,8 +259,10 @@ Case read_part(const RunOptions& options, Part part) {
   if (part == Part::weave) a_case.friction.reset(), a_case.friction_test.reset();
   const bool empty = part == Part::weave ? !a_case.cell : part == Part::friction ? !a_case.friction : false;
   if (empty)
-    throw InputError({{"case.part", part == Part::weave ? "weave" : "friction", "", "is missing, and this command needs it",
-                       part == Part::weave ? "Add `weave:`; configs/unit_cell.yaml shows one." : "Add `friction:`; configs/friction_test.yaml shows one.",
+    throw InputError({{"case.part", part == Part::weave ? "weave" : "friction", "",
+                       "is missing, and this command needs it",
+                       part == Part::weave ? "Add `weave:`; configs/unit_cell.yaml shows one."
+                                           : "Add `friction:`; configs/friction_test.yaml shows one.",
                        options.file.string()}});
   return a_case;
 }
@@ -263,7 +289,8 @@ int run_part(const RunOptions& options, Part part) {
   fmt::print("results              {}\n", folder.path().string());
   if (!findings.stamping || findings.stamping->summary.completed) return exit_done;
   std::cerr << fmt::format(
-      "heddle: stamping stopped: {}\n  {} holds the history, the last state (macroscale/blank_last.vtu) and the report so far.\n"
+      "heddle: stamping stopped: {}\n  {} holds the history, the last state (macroscale/blank_last.vtu) and "
+      "the report so far.\n"
       "  Try smaller steps (--set process.steps={}), or look where the blank folds.\n",
       findings.stamping->summary.failure, folder.path().string(), 2 * a_case.stamping->process.steps);
   return exit_failed;
@@ -271,8 +298,14 @@ int run_part(const RunOptions& options, Part part) {
 
 }  // namespace
 
-int run_case(const RunOptions& options) { return run_part(options, Part::all); }
-int weave_case(const RunOptions& options) { return run_part(options, Part::weave); }
-int friction_case(const RunOptions& options) { return run_part(options, Part::friction); }
+int run_case(const RunOptions& options) {
+  return run_part(options, Part::all);
+}
+int weave_case(const RunOptions& options) {
+  return run_part(options, Part::weave);
+}
+int friction_case(const RunOptions& options) {
+  return run_part(options, Part::friction);
+}
 
 }  // namespace heddle::pipeline

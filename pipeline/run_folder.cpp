@@ -26,23 +26,29 @@ std::string case_in(const fs::path& folder) {
 
 void demand_own_folder(const Case& a_case, const fs::path& folder) {
   if (fs::exists(folder) && !fs::is_directory(folder))
-    throw InputError({{"output.folder.file", "-o", folder.string(), "must be a folder, but a file has this name", "Choose another folder with -o."}});
+    throw InputError({{"output.folder.file", "-o", folder.string(),
+                       "must be a folder, but a file has this name", "Choose another folder with -o."}});
   if (!fs::exists(folder) || fs::is_empty(folder)) return;
   const std::string held = case_in(folder);
   if (held == a_case.name) return;
   throw InputError({{"output.folder.other", "-o", folder.string(),
-                     held.empty() ? "holds files that are not a run of heddle" : fmt::format("holds another case: {}", held),
+                     held.empty() ? "holds files that are not a run of heddle"
+                                  : fmt::format("holds another case: {}", held),
                      "Choose another folder with -o, or write over it with --force."}});
 }
 
 double cpu_seconds() {
   rusage usage{};
   getrusage(RUSAGE_SELF, &usage);
-  const auto seconds = [](const timeval& t) { return static_cast<double>(t.tv_sec) + 1e-6 * static_cast<double>(t.tv_usec); };
+  const auto seconds = [](const timeval& t) {
+    return static_cast<double>(t.tv_sec) + 1e-6 * static_cast<double>(t.tv_usec);
+  };
   return seconds(usage.ru_utime) + seconds(usage.ru_stime);
 }
 
-double wall_seconds() { return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count(); }
+double wall_seconds() {
+  return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
+}
 
 std::string processor_name() {
   std::ifstream info("/proc/cpuinfo");
@@ -59,12 +65,15 @@ RunFolder::RunFolder(const Case& a_case, fs::path folder, bool force) : path_(st
   write_resolved(a_case, path_);
 }
 
-RunFolder::Meter RunFolder::Meter::start() { return {wall_seconds(), cpu_seconds()}; }
+RunFolder::Meter RunFolder::Meter::start() {
+  return {wall_seconds(), cpu_seconds()};
+}
 
 StageRecord RunFolder::Meter::record(const std::string& name) const {
   rusage usage{};
   getrusage(RUSAGE_SELF, &usage);
-  return {name, wall_seconds() - wall, cpu_seconds() - cpu, 1024.0 * static_cast<double>(usage.ru_maxrss), false};
+  return {name, wall_seconds() - wall, cpu_seconds() - cpu, 1024.0 * static_cast<double>(usage.ru_maxrss),
+          false};
 }
 
 void RunFolder::close(const Case& a_case) const {

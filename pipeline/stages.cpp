@@ -17,25 +17,29 @@ namespace {
 std::string in_words(const friction::FittedParameter& p) {
   const std::string unit = p.unit.empty() ? "" : " " + p.unit;
   if (!p.fitted) return fmt::format("{} = {:.4g}{} (held)", p.key, p.value, unit);
-  if (p.standard_error) return fmt::format("{} = {:.4g} +- {:.2g}{} (fitted)", p.key, p.value, *p.standard_error, unit);
+  if (p.standard_error)
+    return fmt::format("{} = {:.4g} +- {:.2g}{} (fitted)", p.key, p.value, *p.standard_error, unit);
   return fmt::format("{} = {:.4g}{} (fitted, no degree of freedom left)", p.key, p.value, unit);
 }
 
 void add_calibration_notes(FrictionStage& stage, const FrictionSpec& spec) {
   const friction::Calibration& c = stage.calibration->assumed;
-  std::string fitted = fmt::format("The friction law was fitted to {} pulls (RMS error {:.2f} %, {} degrees of freedom): ", c.rows.size(),
-                                   100.0 * c.rms_error, c.degrees_of_freedom);
+  std::string fitted = fmt::format(
+      "The friction law was fitted to {} pulls (RMS error {:.2f} %, {} degrees of freedom): ", c.rows.size(),
+      100.0 * c.rms_error, c.degrees_of_freedom);
   for (std::size_t k = 0; k < c.parameters.size(); ++k) fitted += (k ? "; " : "") + in_words(c.parameters[k]);
   stage.notes.push_back(fitted + ".");
-  stage.notes.push_back(fmt::format(
-      "The plate area of the friction rig is assumed ({:g} m^2, band {:g} to {:g} m^2): the paper does not give it. At the ends of the "
-      "band the fit has RMS errors of {:.2f} and {:.2f} %.",
-      spec.rig.plate_area, spec.rig.plate_area_band[0], spec.rig.plate_area_band[1], 100.0 * stage.calibration->low.rms_error,
-      100.0 * stage.calibration->high.rms_error));
+  stage.notes.push_back(
+      fmt::format("The plate area of the friction rig is assumed ({:g} m^2, band {:g} to {:g} m^2): the "
+                  "paper does not give it. At the ends of the "
+                  "band the fit has RMS errors of {:.2f} and {:.2f} %.",
+                  spec.rig.plate_area, spec.rig.plate_area_band[0], spec.rig.plate_area_band[1],
+                  100.0 * stage.calibration->low.rms_error, 100.0 * stage.calibration->high.rms_error));
 }
 
 // Mean log slope of the weave's contact area between the lowest and the highest pressure of the rows.
-double exponent_between(const friction::AreaFunction& area, const std::vector<friction::FrictionTestResult>& rows) {
+double exponent_between(const friction::AreaFunction& area,
+                        const std::vector<friction::FrictionTestResult>& rows) {
   double low = 1e300, high = 0.0;
   for (const auto& row : rows) {
     low = std::min(low, row.context.pressure);
@@ -47,16 +51,21 @@ double exponent_between(const friction::AreaFunction& area, const std::vector<fr
 void calibrate_law(FrictionStage& stage, const FrictionSpec& spec, const friction::AreaFunction& area,
                    const friction::AreaFunction& weave_area) {
   const auto rows = friction::read_friction_table(spec.calibration_data.string());
-  const friction::CalibrationOptions options{.hold_tool_temperature_slope = !spec.fit_temperature_slope, .search = {}};
+  const friction::CalibrationOptions options{.hold_tool_temperature_slope = !spec.fit_temperature_slope,
+                                             .search = {}};
   stage.calibration = friction::calibrate_band(spec.model, rows, spec.rig, area, options);
   stage.model = stage.calibration->assumed.model;
   add_calibration_notes(stage, spec);
   if (!std::holds_alternative<friction::HerseyPower>(spec.model.law)) return;
-  stage.area_exponent = friction::area_exponent_that_fits(spec.model.film, spec.model.effects, rows, spec.rig);
-  std::string note = fmt::format("A contact area phi ~ p^a with a = {:.2f} would meet the calibration pulls best", stage.area_exponent->value);
+  stage.area_exponent =
+      friction::area_exponent_that_fits(spec.model.film, spec.model.effects, rows, spec.rig);
+  std::string note =
+      fmt::format("A contact area phi ~ p^a with a = {:.2f} would meet the calibration pulls best",
+                  stage.area_exponent->value);
   if (weave_area) {
     stage.area_exponent_of_weave = exponent_between(weave_area, stage.calibration->assumed.rows);
-    note += fmt::format("; the weave's compaction (a prior, not fitted) gives a = {:.2f} between their loads", *stage.area_exponent_of_weave);
+    note += fmt::format("; the weave's compaction (a prior, not fitted) gives a = {:.2f} between their loads",
+                        *stage.area_exponent_of_weave);
   }
   stage.notes.push_back(note + ".");
 }
@@ -77,7 +86,8 @@ FrictionTestRow file_row(const friction::FrictionTestRow& row, const friction::F
 }
 
 // The campaign's own pulls, one factor at a time, and the range of mu over every combination of its levels.
-void add_design(FrictionStage& stage, const FrictionSpec& spec, const friction::AreaFunction& area, const std::string& path) {
+void add_design(FrictionStage& stage, const FrictionSpec& spec, const friction::AreaFunction& area,
+                const std::string& path) {
   const friction::TestDesign design = friction::read_test_design(path);
   const auto rows = friction::one_at_a_time(design);
   const auto results = friction::run_friction_tests(stage.model, rows, spec.rig, area);
@@ -88,11 +98,14 @@ void add_design(FrictionStage& stage, const FrictionSpec& spec, const friction::
     low = std::min(low, result.mu);
     high = std::max(high, result.mu);
   }
-  stage.notes.push_back(fmt::format("Over all {} combinations of the campaign's levels mu lies between {:.3f} and {:.3f}.", all.size(), low, high));
+  stage.notes.push_back(
+      fmt::format("Over all {} combinations of the campaign's levels mu lies between {:.3f} and {:.3f}.",
+                  all.size(), low, high));
 }
 
 // mu against speed at the first test's temperatures, for three loads across the rig's range.
-std::vector<FrictionCurveRow> curve_of(const FrictionStage& stage, const FrictionSpec& spec, const friction::AreaFunction& area) {
+std::vector<FrictionCurveRow> curve_of(const FrictionStage& stage, const FrictionSpec& spec,
+                                       const friction::AreaFunction& area) {
   std::vector<FrictionCurveRow> curve;
   friction::FrictionTestRow row;
   for (double pressure : {5e3, 5e4, 5e5}) {
@@ -101,7 +114,8 @@ std::vector<FrictionCurveRow> curve_of(const FrictionStage& stage, const Frictio
       row.velocity = 1e-4 * std::pow(10.0, k / 12.0);
       const auto context = friction::contact_of(row, spec.rig, area);
       const auto law = friction::evaluate(stage.model, context, {});
-      curve.push_back({row.tool_temperature, row.fabric_temperature, context.pressure, row.velocity, law.film_viscosity, law.hersey, law.mu});
+      curve.push_back({row.tool_temperature, row.fabric_temperature, context.pressure, row.velocity,
+                       law.film_viscosity, law.hersey, law.mu});
     }
   }
   return curve;
@@ -121,7 +135,8 @@ friction::AreaFunction area_function(const FrictionSpec& spec, const mesoscale::
 FrictionStage run_friction_stage(const Case& a_case, const mesoscale::FabricProperties* fabric) {
   const FrictionSpec& spec = *a_case.friction;
   if (spec.contact_pressure == macroscale::ContactPressure::real && !fabric)
-    throw InputError({{"friction.contact_pressure.weave", "friction.contact_pressure", "real", "needs a weave: the contact area comes from it",
+    throw InputError({{"friction.contact_pressure.weave", "friction.contact_pressure", "real",
+                       "needs a weave: the contact area comes from it",
                        "Add `weave:`, or write `contact_pressure: nominal`."}});
   const friction::AreaFunction area = area_function(spec, fabric);
   FrictionSpec real = spec;
@@ -133,10 +148,12 @@ FrictionStage run_friction_stage(const Case& a_case, const mesoscale::FabricProp
     const auto rows = friction::read_friction_table(a_case.friction_test->data.string());
     const auto results = friction::run_friction_tests(stage.model, rows, spec.rig, area);
     for (std::size_t k = 0; k < rows.size(); ++k) stage.test.push_back(file_row(rows[k], results[k]));
-    if (!a_case.friction_test->design.empty()) add_design(stage, spec, area, a_case.friction_test->design.string());
+    if (!a_case.friction_test->design.empty())
+      add_design(stage, spec, area, a_case.friction_test->design.string());
   } else if (stage.calibration) {
     const auto rows = friction::read_friction_table(spec.calibration_data.string());
-    for (std::size_t k = 0; k < rows.size(); ++k) stage.test.push_back(file_row(rows[k], stage.calibration->assumed.rows[k]));
+    for (std::size_t k = 0; k < rows.size(); ++k)
+      stage.test.push_back(file_row(rows[k], stage.calibration->assumed.rows[k]));
   }
   stage.curve = curve_of(stage, spec, area);
   return stage;
@@ -148,12 +165,14 @@ WeavePictures weave_pictures(const mesoscale::CellSpec& spec) {
   pictures.height = mesoscale::height_field(cell, 96);
   pictures.section = mesoscale::warp_cut(cell);
   const mesoscale::TriMesh mesh = mesoscale::tow_surfaces(cell);
-  for (const auto& t : mesh.triangles) pictures.tows.push_back({mesh.vertices[t[0]], mesh.vertices[t[1]], mesh.vertices[t[2]]});
+  for (const auto& t : mesh.triangles)
+    pictures.tows.push_back({mesh.vertices[t[0]], mesh.vertices[t[1]], mesh.vertices[t[2]]});
   return pictures;
 }
 
 double mean_binder_pressure(const macroscale::StampingSpec& spec) {
-  const double area = spec.blank.size[0] * spec.blank.size[1] - std::numbers::pi * spec.binder.inner_radius * spec.binder.inner_radius;
+  const double area = spec.blank.size[0] * spec.blank.size[1] -
+                      std::numbers::pi * spec.binder.inner_radius * spec.binder.inner_radius;
   return spec.process.binder_force / area;
 }
 

@@ -6,8 +6,9 @@
 
 namespace heddle::test {
 
-/// Smallest relative gap between a slope and central differences over four step sizes: truncation and rounding
-/// pull in opposite directions, so the best of four tells whether the slope is right. A wrong slope stays wrong at all.
+/// Smallest relative gap between a slope and central differences over four step sizes: truncation and
+/// rounding pull in opposite directions, so the best of four tells whether the slope is right. A wrong slope
+/// stays wrong at all.
 /// @param f      smooth function of one number
 /// @param x      where
 /// @param scale  length over which f changes

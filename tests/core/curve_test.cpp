@@ -11,7 +11,7 @@ using heddle::test::derivative_gap;
 
 namespace {
 Curve hardening() {
-  return Curve({0.0, 0.1, 0.3, 0.35, 1.0}, {0.0, 1.0, 1.2, 5.0, 9.0});
+  return Curve({0.0, 0.1, 0.3, 0.35, 0.6, 1.0}, {0.0, 1.0, 1.2, 5.0, 7.5, 10.5});
 }
 }  // namespace
 

@@ -200,8 +200,9 @@ TEST_CASE("what the rows do not vary is held where it was", "[friction]") {
   }
   SECTION("the slope is to be held, though the rows could tell it") {
     const auto rows = star_design();
-    const Calibration found = calibrate(with_shift(HerseyPower{}, -5e-4, Form::term), measured_with(truth, rows), {},
-                                        {}, {.hold_tool_temperature_slope = true});
+    const Calibration found =
+        calibrate(with_shift(HerseyPower{}, -5e-4, Form::term), measured_with(truth, rows), {}, {},
+                  {.hold_tool_temperature_slope = true});
     CHECK_FALSE(found.parameters[2].fitted);
     CHECK(found.model.effects.tool_temperature_shift->slope == -5e-4);
     CHECK(found.rms_error > 1e-3);  // the truth has another slope
@@ -261,7 +262,8 @@ TEST_CASE("calibration does not look at the law's own numbers beforehand", "[fri
 
 TEST_CASE("running out of iterations is a result with a reason", "[friction]") {
   const auto rows = measured_with(with_shift(HerseyPower{0.4, 0.2}, -8e-4, Form::term), star_design());
-  const Calibration found = calibrate(blank(HerseyPower{}, Form::term), rows, {}, {}, {.search = {.iterations_max = 1}});
+  const Calibration found =
+      calibrate(blank(HerseyPower{}, Form::term), rows, {}, {}, {.search = {.iterations_max = 1}});
   CHECK_FALSE(found.summary.converged);
   CHECK(found.summary.reason == "the number of iterations ran out");
   CHECK(found.summary.iterations == 1);

@@ -5,7 +5,8 @@
 using namespace heddle::friction;
 
 TEST_CASE("the paper's Table 2 reads as a baseline and eighteen other pulls", "[friction][design]") {
-  const TestDesign design = read_test_design(HEDDLE_SOURCE_DIR "/tests/paper/data/friction_table2_design.csv");
+  const TestDesign design =
+      read_test_design(HEDDLE_SOURCE_DIR "/tests/paper/data/friction_table2_design.csv");
   const auto rows = one_at_a_time(design);
   REQUIRE(rows.size() == 1 + 4 + 6 + 5 + 2 + 4);
   CHECK(rows[0].velocity == Approx(16.6e-3));
@@ -16,9 +17,13 @@ TEST_CASE("the paper's Table 2 reads as a baseline and eighteen other pulls", "[
   CHECK(all_combinations(design).size() == 5 * 7 * 6 * 3);
 }
 
-TEST_CASE("a design with faults is refused with all of them and their lines", "[friction][design][wrong input]") {
+TEST_CASE("a design with faults is refused with all of them and their lines",
+          "[friction][design][wrong input]") {
   try {
-    parse_test_design("parameter,unit,baseline,additional\nvelocity,m/s,16.6,1.66\nnormal_force,N,abc,218;\nhumidity,-,1,2\n", "design.csv");
+    parse_test_design(
+        "parameter,unit,baseline,additional\nvelocity,m/"
+        "s,16.6,1.66\nnormal_force,N,abc,218;\nhumidity,-,1,2\n",
+        "design.csv");
     FAIL("was accepted");
   } catch (const heddle::InputError& error) {
     const auto& p = error.problems();

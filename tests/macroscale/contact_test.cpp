@@ -4,9 +4,9 @@
 #include "tests/derivative_check.h"
 
 using namespace heddle::macroscale;
-using heddle::test::derivative_gap;
 using Eigen::Matrix3d;
 using Eigen::Vector3d;
+using heddle::test::derivative_gap;
 
 namespace {
 
@@ -26,7 +26,8 @@ FrictionPoint loaded_point() {
 
 }  // namespace
 
-TEST_CASE("contact energy, pressure and stiffness are each the slope of the one before", "[macroscale][contact][derivative]") {
+TEST_CASE("contact energy, pressure and stiffness are each the slope of the one before",
+          "[macroscale][contact][derivative]") {
   const heddle::Curve compaction({0.0, 1e-4, 3e-4, 5e-4}, {0.0, 1e3, 2e4, 2e5});
   const double gap = GENERATE(0.7e-3, 0.5e-3, 0.2e-3, -0.1e-3);
   const double half = 0.75e-3;
@@ -39,7 +40,8 @@ TEST_CASE("contact energy, pressure and stiffness are each the slope of the one 
   CHECK(normal_contact(compaction, 0.8e-3, half).pressure == 0.0);
 }
 
-TEST_CASE("friction force is the slope of its potential and its tangent the slope of the force", "[macroscale][contact][derivative]") {
+TEST_CASE("friction force is the slope of its potential and its tangent the slope of the force",
+          "[macroscale][contact][derivative]") {
   const auto model = rising();
   const FrictionSettings settings{&model, 1e-3};
   const FrictionPoint point = loaded_point();
@@ -60,7 +62,8 @@ TEST_CASE("friction force is the slope of its potential and its tangent the slop
   }
 }
 
-TEST_CASE("friction acts in the tangent plane only, against slip, with mu N when sliding", "[macroscale][contact]") {
+TEST_CASE("friction acts in the tangent plane only, against slip, with mu N when sliding",
+          "[macroscale][contact]") {
   heddle::friction::Model model;
   model.law = heddle::friction::Coulomb{0.3};
   const FrictionSettings settings{&model, 1e-4};
@@ -73,13 +76,16 @@ TEST_CASE("friction acts in the tangent plane only, against slip, with mu N when
   CHECK(friction_tangent(settings, point, Vector3d::Zero(), true).allFinite());
 }
 
-TEST_CASE("the friction potential does not depend on the path: power around a closed loop is zero", "[macroscale][contact][invariant]") {
+TEST_CASE("the friction potential does not depend on the path: power around a closed loop is zero",
+          "[macroscale][contact][invariant]") {
   const auto model = rising();
   const FrictionSettings settings{&model, 1e-3};
   const FrictionPoint point = loaded_point();
-  const double there = friction_power_difference(settings, point, 2e-4, 3e-3), back = friction_power_difference(settings, point, 3e-3, 2e-4);
+  const double there = friction_power_difference(settings, point, 2e-4, 3e-3),
+               back = friction_power_difference(settings, point, 3e-3, 2e-4);
   CHECK(there + back == Approx(0.0).margin(1e-12 * std::abs(there)));
   // Two pieces against one: only quadrature error is left.
-  const double pieces = friction_power_difference(settings, point, 2e-4, 1.7e-3) + friction_power_difference(settings, point, 1.7e-3, 3e-3);
+  const double pieces = friction_power_difference(settings, point, 2e-4, 1.7e-3) +
+                        friction_power_difference(settings, point, 1.7e-3, 3e-3);
   CHECK(pieces == Approx(there).epsilon(1e-6));
 }

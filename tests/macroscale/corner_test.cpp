@@ -8,9 +8,9 @@
 #include "tests/macroscale/sample_fabric.h"
 
 using namespace heddle::macroscale;
+using Eigen::Vector3d;
 using heddle::test::derivative_gap;
 using heddle::test::make_fabric;
-using Eigen::Vector3d;
 using Vector6 = Eigen::Matrix<double, 6, 1>;
 using Matrix6 = Eigen::Matrix<double, 6, 6>;
 
@@ -40,9 +40,13 @@ struct Pose {
 
 Pose pose(int kind) {
   switch (kind) {
-    case 0: return {{4.01e-3, 0, 0}, {1.2e-3, 4.88e-3, 0.1e-3}, 0.2};     // stretched, sheared, opening
-    case 1: return {{3.9e-3, 0.2e-3, 0.7e-3}, {-2.5e-3, 4.2e-3, 0}, -0.5};  // compressed warp, sheared the other way
-    default: return {{3.7e-3, 0, 0.3e-3}, {3.6e-3, 3.4e-3, 0}, 0.8};       // near locking, slack: indefinite
+    case 0:
+      return {{4.01e-3, 0, 0}, {1.2e-3, 4.88e-3, 0.1e-3}, 0.2};  // stretched, sheared, opening
+    case 1:
+      return {
+          {3.9e-3, 0.2e-3, 0.7e-3}, {-2.5e-3, 4.2e-3, 0}, -0.5};  // compressed warp, sheared the other way
+    default:
+      return {{3.7e-3, 0, 0.3e-3}, {3.6e-3, 3.4e-3, 0}, 0.8};  // near locking, slack: indefinite
   }
 }
 
@@ -66,7 +70,8 @@ Matrix6 hessian_of(const CornerLaw& law, const Vector6& y, double before, Filter
 
 }  // namespace
 
-TEST_CASE("corner forces are the slope of the corner energy, stiffness the slope of the forces", "[macroscale][corner][derivative]") {
+TEST_CASE("corner forces are the slope of the corner energy, stiffness the slope of the forces",
+          "[macroscale][corner][derivative]") {
   const CornerLaw law = law_with_rate();
   const Pose p = pose(GENERATE(0, 1, 2));
   Vector6 y;
@@ -88,16 +93,19 @@ TEST_CASE("corner forces are the slope of the corner energy, stiffness the slope
   }
 }
 
-TEST_CASE("filtered corner stiffness has no negative eigenvalue and keeps the positive ones", "[macroscale][corner]") {
+TEST_CASE("filtered corner stiffness has no negative eigenvalue and keeps the positive ones",
+          "[macroscale][corner]") {
   const CornerLaw law = law_with_rate();
   const Pose p = pose(2);
   Vector6 y;
   y << p.a, p.b;
-  const Matrix6 exact = hessian_of(law, y, p.before, Filter::none), filtered = hessian_of(law, y, p.before, Filter::positive);
+  const Matrix6 exact = hessian_of(law, y, p.before, Filter::none),
+                filtered = hessian_of(law, y, p.before, Filter::positive);
   const Eigen::SelfAdjointEigenSolver<Matrix6> e(exact), f(filtered);
   REQUIRE(e.eigenvalues()[0] < 0.0);  // else the filter had nothing to do
   CHECK(f.eigenvalues()[0] > -1e-9 * f.eigenvalues()[5]);
-  const Matrix6 expected = e.eigenvectors() * e.eigenvalues().cwiseMax(0.0).asDiagonal() * e.eigenvectors().transpose();
+  const Matrix6 expected =
+      e.eigenvectors() * e.eigenvalues().cwiseMax(0.0).asDiagonal() * e.eigenvectors().transpose();
   CHECK((filtered - expected).norm() < 1e-9 * exact.norm());
 }
 
@@ -105,7 +113,9 @@ TEST_CASE("a turned corner has the same energy and turned forces", "[macroscale]
   const CornerLaw law = law_with_rate();
   const Pose p = pose(GENERATE(0, 1));
   const Eigen::Matrix3d r = Eigen::AngleAxisd(1.1, Vector3d(1, 2, -1).normalized()).toRotationMatrix();
-  CHECK(corner_energy(law, r * p.a, r * p.b, p.before).total() == Approx(corner_energy(law, p.a, p.b, p.before).total()).epsilon(1e-11));
-  const auto g = corner_gradient(law, p.a, p.b, p.before), turned = corner_gradient(law, r * p.a, r * p.b, p.before);
+  CHECK(corner_energy(law, r * p.a, r * p.b, p.before).total() ==
+        Approx(corner_energy(law, p.a, p.b, p.before).total()).epsilon(1e-11));
+  const auto g = corner_gradient(law, p.a, p.b, p.before),
+             turned = corner_gradient(law, r * p.a, r * p.b, p.before);
   CHECK((turned.a() - r * g.a()).norm() < 1e-10 * g.a().norm());
 }

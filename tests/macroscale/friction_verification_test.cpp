@@ -11,12 +11,13 @@
 #include "tests/macroscale/steps.h"
 
 using namespace heddle::macroscale;
-using heddle::test::make_fabric;
-using heddle::test::run_steps;
 using Eigen::Vector3d;
 using Eigen::VectorXd;
+using heddle::test::make_fabric;
+using heddle::test::run_steps;
 
-TEST_CASE("V5: the friction test through the finite elements gives 2 mu N with Coulomb 0.3", "[macroscale][verification][friction]") {
+TEST_CASE("V5: the friction test through the finite elements gives 2 mu N with Coulomb 0.3",
+          "[macroscale][verification][friction]") {
   const double load = GENERATE(218.0, 343.0, 1000.0, 1500.0, 4000.0);
   CAPTURE(load);
   heddle::friction::Model model;
@@ -27,7 +28,8 @@ TEST_CASE("V5: the friction test through the finite elements gives 2 mu N with C
   CHECK(result.pressure_spread < 0.01);  // V2: uniform pressure on a plate
 }
 
-TEST_CASE("V5: with a rate law the finite elements meet the law at the pressure and speed of the rig", "[macroscale][verification][friction]") {
+TEST_CASE("V5: with a rate law the finite elements meet the law at the pressure and speed of the rig",
+          "[macroscale][verification][friction]") {
   heddle::friction::Model model;
   model.law = heddle::friction::HerseyPower{0.6, 0.14};
   PullOutSpec spec;
@@ -45,8 +47,8 @@ TEST_CASE("V5: with a rate law the finite elements meet the law at the pressure 
 
 namespace {
 
-// A narrow strip laid over a cylinder through `wrap` radians, one end pulled back by a dead load, the other drawn
-// along its tangent. Returns tension at the drawn end over tension at the loaded one.
+// A narrow strip laid over a cylinder through `wrap` radians, one end pulled back by a dead load, the other
+// drawn along its tangent. Returns tension at the drawn end over tension at the loaded one.
 double capstan_ratio(double mu, double wrap, int per_radius) {
   const auto fabric = make_fabric({.bending = 1e-9, .contact_stiffness = 5e9});
   heddle::friction::Model friction;
@@ -66,15 +68,18 @@ double capstan_ratio(double mu, double wrap, int per_radius) {
   const double half = 0.5 * wrap;
   const auto place = [&](double s) {
     const double arc = std::clamp(s / mid, -half, half), rest = s - mid * arc;
-    return Vector3d(mid * std::sin(arc) + rest * std::cos(arc), 0.0, mid * std::cos(arc) - rest * std::sin(arc));
+    return Vector3d(mid * std::sin(arc) + rest * std::cos(arc), 0.0,
+                    mid * std::cos(arc) - rest * std::sin(arc));
   };
   scene.held.assign(3 * blank.nodes(), 0);
   scene.load.assign(3 * blank.nodes(), 0.0);
-  const Vector3d forward(std::cos(half), 0.0, -std::sin(half)), backward(-std::cos(half), 0.0, -std::sin(half));
+  const Vector3d forward(std::cos(half), 0.0, -std::sin(half)),
+      backward(-std::cos(half), 0.0, -std::sin(half));
   for (int j = 0; j <= blank.nv; ++j)
     for (int c = 0; c < 3; ++c) {
       scene.held[3 * blank.node(blank.nu, j) + c] = 1;
-      scene.load[3 * blank.node(0, j) + c] = tension * backward[c] * (j == 0 || j == blank.nv ? 0.5 : 1.0) / blank.nv;
+      scene.load[3 * blank.node(0, j) + c] =
+          tension * backward[c] * (j == 0 || j == blank.nv ? 0.5 : 1.0) / blank.nv;
     }
   System system(scene);
   State state = initial_state(scene);
@@ -104,8 +109,8 @@ SolveOptions tight_lag() {
   return options;
 }
 
-// A strip held between plate and binder, drawn over the die's shoulder and straight down its wall: tension [N].
-// The ring is so large (5 m) that its edge is a straight shoulder to a 5 mm strip.
+// A strip held between plate and binder, drawn over the die's shoulder and straight down its wall: tension
+// [N]. The ring is so large (5 m) that its edge is a straight shoulder to a 5 mm strip.
 double draw_in_tension(double mu, double binder_force, bool shoulder) {
   const auto fabric = make_fabric({.bending = 1e-5, .contact_stiffness = 5e9});
   heddle::friction::Model friction;
@@ -118,7 +123,8 @@ double draw_in_tension(double mu, double binder_force, bool shoulder) {
   scene.fabric = &fabric;
   scene.friction = &friction;
   scene.tools = {{Role::die, RingShape{-half, opening, fillet, true}, Motion::fixed, 0.0, 0.0},
-                 {Role::binder, RingShape{half, opening + fillet - 2e-3, 2e-3, false}, Motion::loaded, binder_force, 0.5}};
+                 {Role::binder, RingShape{half, opening + fillet - 2e-3, 2e-3, false}, Motion::loaded,
+                  binder_force, 0.5}};
   scene.slip_smoothing = 4e-6;
   scene.shear_rate = false;
   Blank& blank = scene.blank;
@@ -127,8 +133,10 @@ double draw_in_tension(double mu, double binder_force, bool shoulder) {
   const auto place = [&](double s) -> Vector3d {
     if (s <= flat) return {edge + flat - s, 0.0, 0.0};
     if (!shoulder) return {edge + flat - s, 0.0, 0.0};
-    const double angle = std::min((s - flat) / (fillet + half), 0.5 * std::numbers::pi), rest = s - flat - angle * (fillet + half);
-    return {edge - (fillet + half) * std::sin(angle), 0.0, -half - fillet + (fillet + half) * std::cos(angle) - rest};
+    const double angle = std::min((s - flat) / (fillet + half), 0.5 * std::numbers::pi),
+                 rest = s - flat - angle * (fillet + half);
+    return {edge - (fillet + half) * std::sin(angle), 0.0,
+            -half - fillet + (fillet + half) * std::cos(angle) - rest};
   };
   const Vector3d pull = shoulder ? Vector3d(0, 0, -1) : Vector3d(-1, 0, 0);
   System system(scene);
@@ -154,9 +162,12 @@ double draw_in_tension(double mu, double binder_force, bool shoulder) {
     }
   };
   double tension = 0.0;
-  run_steps(system, state, 0.005, 60, draw, [&](const StepData& step, const State& end) {
-    tension = account(system, step, end).forces.by_supports.dot(pull);
-  }, tight_lag());
+  run_steps(
+      system, state, 0.005, 60, draw,
+      [&](const StepData& step, const State& end) {
+        tension = account(system, step, end).forces.by_supports.dot(pull);
+      },
+      tight_lag());
   return tension;
 }
 
@@ -171,7 +182,8 @@ TEST_CASE("V6: tension over a cylinder grows by exp(mu theta)", "[macroscale][ve
   CHECK(capstan_ratio(0.0, wrap, 20) == Approx(1.0).epsilon(0.002));
 }
 
-TEST_CASE("V15: a strip drawn from under the binder carries twice mu times the binder force", "[macroscale][verification][friction]") {
+TEST_CASE("V15: a strip drawn from under the binder carries twice mu times the binder force",
+          "[macroscale][verification][friction]") {
   const double mu = 0.3;
   const double t1 = draw_in_tension(mu, 50.0, false), t2 = draw_in_tension(mu, 200.0, false);
   const double slope = (t2 - t1) / 150.0, intercept = t1 - 50.0 * slope;
@@ -180,7 +192,8 @@ TEST_CASE("V15: a strip drawn from under the binder carries twice mu times the b
   CHECK(std::abs(intercept) < 0.01 * t1);
 }
 
-TEST_CASE("V15: over the die's shoulder that tension grows by exp(mu pi / 2)", "[macroscale][verification][friction]") {
+TEST_CASE("V15: over the die's shoulder that tension grows by exp(mu pi / 2)",
+          "[macroscale][verification][friction]") {
   const double mu = 0.3;
   const double t1 = draw_in_tension(mu, 50.0, true), t2 = draw_in_tension(mu, 200.0, true);
   const double slope = (t2 - t1) / 150.0;

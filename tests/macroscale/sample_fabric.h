@@ -10,14 +10,14 @@ namespace heddle::test {
 
 /// Fabrics made up for tests: simple closed forms, so that answers can be worked out by hand.
 struct SampleFabric {
-  double areal_density = 0.7;     ///< [kg/m^2]
-  double thickness = 1.5e-3;      ///< [m]
-  double tow_stiffness = 5.9e6;   ///< EA per width [N/m]
-  double shear_stiffness = 60.0;  ///< dPsi/ds = shear_stiffness * s [N/m]
-  double rate_consistency = 0.0;  ///< [N s^n/m]
-  double bending = 1e-3;          ///< [N m]
-  double contact_stiffness = 5e8; ///< [Pa/m], p = k d^2 / (d + toe)
-  double toe = 2e-5;              ///< [m]
+  double areal_density = 0.7;      ///< [kg/m^2]
+  double thickness = 1.5e-3;       ///< [m]
+  double tow_stiffness = 5.9e6;    ///< EA per width [N/m]
+  double shear_stiffness = 60.0;   ///< dPsi/ds = shear_stiffness * s [N/m]
+  double rate_consistency = 0.0;   ///< [N s^n/m]
+  double bending = 1e-3;           ///< [N m]
+  double contact_stiffness = 5e8;  ///< [Pa/m], p = k d^2 / (d + toe)
+  double toe = 2e-5;               ///< [m]
 };
 
 inline mesoscale::FabricProperties make_fabric(const SampleFabric& sample) {
@@ -45,6 +45,8 @@ inline mesoscale::FabricProperties make_fabric(const SampleFabric& sample) {
     p.push_back(sample.contact_stiffness * d.back() * d.back() / (d.back() + sample.toe));
   }
   fabric.compaction = CurveFamily({0.0}, {Curve(d, p)});
+  // The whole face touches: real pressure is nominal pressure.
+  fabric.contact.log_fraction = CurveFamily({0.0}, {Curve({0.0, 20.0}, {0.0, 0.0})});
   return fabric;
 }
 

@@ -34,7 +34,9 @@ StampingResult run(const StampingSpec& spec, double rate_consistency = 0.0) {
 
 }  // namespace
 
-TEST_CASE("a small stamping closes its energy ledger and its force balance, and keeps the symmetries of the square", "[macroscale][stamping]") {
+TEST_CASE(
+    "a small stamping closes its energy ledger and its force balance, and keeps the symmetries of the square",
+    "[macroscale][stamping]") {
   const auto result = run(small_case(), 5.0);
   const StampingSummary& s = result.summary;
   REQUIRE(s.completed);
@@ -47,7 +49,8 @@ TEST_CASE("a small stamping closes its energy ledger and its force balance, and 
   CHECK(s.twist_share < 0.005);
 
   // The check can fail: without one of its columns the ledger is open.
-  for (double HistoryRow::*column : {&HistoryRow::energy_tow, &HistoryRow::friction_binder, &HistoryRow::energy_shear}) {
+  for (double HistoryRow::*column :
+       {&HistoryRow::energy_tow, &HistoryRow::friction_binder, &HistoryRow::energy_shear}) {
     auto history = result.history;
     for (HistoryRow& row : history) row.*column = 0.0;
     CHECK(energy_residual_max(history) > 0.01);
@@ -69,7 +72,8 @@ TEST_CASE("work of the punch is the area under its force against stroke", "[macr
   CHECK(result.history.back().work_punch > area);
 }
 
-TEST_CASE("a rate-free fabric with constant mu does not feel the punch speed; scaled mass and resin do", "[macroscale][stamping]") {
+TEST_CASE("a rate-free fabric with constant mu does not feel the punch speed; scaled mass and resin do",
+          "[macroscale][stamping]") {
   const auto peak = [](double speed, double mass, double rate) {
     StampingSpec spec = small_case();
     spec.process.speed_scale = speed;
@@ -84,7 +88,8 @@ TEST_CASE("a rate-free fabric with constant mu does not feel the punch speed; sc
   CHECK(fast == Approx(base).epsilon(0.002));
   CHECK(std::abs(peak(2.0, 1000.0, 0.0) / base - 1.0) > 0.1);
 
-  const double slow_resin = peak(0.5, 1.0, 20.0), resin = peak(1.0, 1.0, 20.0), fast_resin = peak(2.0, 1.0, 20.0);
+  const double slow_resin = peak(0.5, 1.0, 20.0), resin = peak(1.0, 1.0, 20.0),
+               fast_resin = peak(2.0, 1.0, 20.0);
   const double signature = (fast_resin - resin) / (resin - slow_resin);
   CAPTURE(slow_resin, resin, fast_resin);
   CHECK(resin > base);
@@ -97,7 +102,8 @@ TEST_CASE("the same stamping twice gives the same bytes", "[macroscale][stamping
   spec.process.steps = 5;
   const auto a = run(spec, 5.0), b = run(spec, 5.0);
   REQUIRE(a.history.size() == b.history.size());
-  for (std::size_t k = 0; k < a.history.size(); ++k) CHECK(a.history[k].punch_force == b.history[k].punch_force);
+  for (std::size_t k = 0; k < a.history.size(); ++k)
+    CHECK(a.history[k].punch_force == b.history[k].punch_force);
   CHECK(a.final_state.position == b.final_state.position);
 }
 
@@ -107,7 +113,8 @@ TEST_CASE("punch travel and time are inverse to each other and end at the stroke
   CHECK(stroke_at_time(process, stroke_time(process)) == Approx(process.stroke));
   CHECK(mean_speed(process) == Approx(process.speed_scale * 0.07 / 0.43));
   for (double share : {0.0, 0.3, 0.98, 0.995, 1.0})
-    CHECK(stroke_at_time(process, time_at_stroke(process, share * process.stroke)) == Approx(share * process.stroke).margin(1e-12));
+    CHECK(stroke_at_time(process, time_at_stroke(process, share * process.stroke)) ==
+          Approx(share * process.stroke).margin(1e-12));
 }
 
 TEST_CASE("a stamping that cannot work is refused with every reason at once", "[macroscale][stamping]") {

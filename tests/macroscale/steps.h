@@ -10,10 +10,11 @@
 namespace heddle::test {
 
 /// Runs equal steps from a state; calls `look` after each. Throws when a step does not converge.
-inline void run_steps(macroscale::System& system, macroscale::State& state, double dt, int steps,
-                      const std::function<void(double, Eigen::VectorXd&)>& prescribe,
-                      const std::function<void(const macroscale::StepData&, const macroscale::State&)>& look = {},
-                      const macroscale::SolveOptions& options = {}) {
+inline void run_steps(
+    macroscale::System& system, macroscale::State& state, double dt, int steps,
+    const std::function<void(double, Eigen::VectorXd&)>& prescribe,
+    const std::function<void(const macroscale::StepData&, const macroscale::State&)>& look = {},
+    const macroscale::SolveOptions& options = {}) {
   for (int k = 0; k < steps; ++k) {
     macroscale::State end;
     macroscale::StepData step;

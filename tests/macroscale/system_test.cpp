@@ -10,10 +10,10 @@
 #include "tests/macroscale/sample_fabric.h"
 
 using namespace heddle::macroscale;
-using heddle::test::derivative_gap;
-using heddle::test::make_fabric;
 using Eigen::Vector3d;
 using Eigen::VectorXd;
+using heddle::test::derivative_gap;
+using heddle::test::make_fabric;
 
 namespace {
 
@@ -25,7 +25,8 @@ struct Bench {
   StepData step;
 };
 
-// A crumpled little blank between a punch, a die plate and a loaded binder, with every term of the potential alive.
+// A crumpled little blank between a punch, a die plate and a loaded binder, with every term of the potential
+// alive.
 std::unique_ptr<Bench> bench() {
   auto b = std::make_unique<Bench>();
   b->friction.law = heddle::friction::Coulomb{0.3};
@@ -59,7 +60,8 @@ VectorXd shaken(const Bench& b, double size) {
   return x;
 }
 
-VectorXd multiply(const heddle::SymmetricPattern& pattern, std::span<const double> values, const VectorXd& d) {
+VectorXd multiply(const heddle::SymmetricPattern& pattern, std::span<const double> values,
+                  const VectorXd& d) {
   VectorXd y = VectorXd::Zero(d.size());
   for (int j = 0; j < pattern.size; ++j)
     for (int k = pattern.column_start[j]; k < pattern.column_start[j + 1]; ++k) {
@@ -71,7 +73,8 @@ VectorXd multiply(const heddle::SymmetricPattern& pattern, std::span<const doubl
 
 }  // namespace
 
-TEST_CASE("the residual is the slope of the incremental potential, the matrix the slope of the residual", "[macroscale][system][derivative]") {
+TEST_CASE("the residual is the slope of the incremental potential, the matrix the slope of the residual",
+          "[macroscale][system][derivative]") {
   const auto b = bench();
   System system(b->scene);
   const VectorXd x = shaken(*b, 2e-4), d = shaken(*b, 1.0) - b->state.x;
@@ -87,7 +90,8 @@ TEST_CASE("the residual is the slope of the incremental potential, the matrix th
   const VectorXd h = multiply(system.solver().pattern(), system.solver().values(), d);
   double best = 1e300;
   for (double t : {1e-6, 1e-7, 1e-8}) {
-    const VectorXd difference = (system.gradient(b->step, x + t * d) - system.gradient(b->step, x - t * d)) / (2.0 * t);
+    const VectorXd difference =
+        (system.gradient(b->step, x + t * d) - system.gradient(b->step, x - t * d)) / (2.0 * t);
     best = std::min(best, (difference - h).norm() / h.norm());
   }
   CHECK(best < 1e-6);
@@ -107,7 +111,8 @@ TEST_CASE("a held unknown has no residual and an identity row", "[macroscale][sy
   CHECK((multiply(system.solver().pattern(), system.solver().values(), e) - e).norm() == 0.0);
 }
 
-TEST_CASE("V1: rigid motion costs nothing, and a turned blank has turned forces", "[macroscale][system][invariant]") {
+TEST_CASE("V1: rigid motion costs nothing, and a turned blank has turned forces",
+          "[macroscale][system][invariant]") {
   const auto b = bench();
   b->scene.tools.clear();
   b->scene.stabilisation = 0.0;
@@ -118,7 +123,8 @@ TEST_CASE("V1: rigid motion costs nothing, and a turned blank has turned forces"
   const Eigen::Matrix3d r = Eigen::AngleAxisd(0.8, Vector3d(1, -2, 0.5).normalized()).toRotationMatrix();
   const auto moved = [&](const VectorXd& x) {
     VectorXd y = x;
-    for (int i = 0; i < b->scene.blank.nodes(); ++i) y.segment<3>(3 * i) = r * x.segment<3>(3 * i) + Vector3d(0.1, 0.2, 0.3);
+    for (int i = 0; i < b->scene.blank.nodes(); ++i)
+      y.segment<3>(3 * i) = r * x.segment<3>(3 * i) + Vector3d(0.1, 0.2, 0.3);
     return y;
   };
   const auto internal = [&](const VectorXd& x) {
@@ -156,5 +162,6 @@ TEST_CASE("V2: uniform stretch and shear leave no residual inside the blank", "[
   REQUIRE(scale > 1.0);  // the outline carries the stress
   // Two rows in: bending reaches the second neighbour.
   const int i = 2;
-  for (int j = 1; j < b->scene.blank.nv; ++j) CHECK(g.segment<3>(3 * b->scene.blank.node(i, j)).norm() < 1e-10 * scale);
+  for (int j = 1; j < b->scene.blank.nv; ++j)
+    CHECK(g.segment<3>(3 * b->scene.blank.node(i, j)).norm() < 1e-10 * scale);
 }

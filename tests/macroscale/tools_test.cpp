@@ -32,7 +32,8 @@ std::vector<Probe> probes() {
 
 }  // namespace
 
-TEST_CASE("a tool's normal is the slope of its distance, and its curvature the slope of the normal", "[macroscale][tools][derivative]") {
+TEST_CASE("a tool's normal is the slope of its distance, and its curvature the slope of the normal",
+          "[macroscale][tools][derivative]") {
   const auto all = probes();
   const std::size_t index = GENERATE(range(0, 10));
   const Probe& probe = all[index];
@@ -62,7 +63,9 @@ TEST_CASE("a tool's normal is the slope of its distance, and its curvature the s
 TEST_CASE("flat face, rounded edge and wall of a ring meet with one normal", "[macroscale][tools]") {
   const RingShape die{0.0, 0.072, 0.02, true};
   const double e = 1e-9;
-  const auto jump = [&](const Vector3d& a, const Vector3d& b) { return (distance(die, a).normal - distance(die, b).normal).norm(); };
+  const auto jump = [&](const Vector3d& a, const Vector3d& b) {
+    return (distance(die, a).normal - distance(die, b).normal).norm();
+  };
   CHECK(jump({0.092 - e, 0, 0.001}, {0.092 + e, 0, 0.001}) < 1e-6);
   CHECK(jump({0.0715, 0, -0.02 - e}, {0.0715, 0, -0.02 + e}) < 1e-6);
   CHECK(distance(die, {0.0715, 0, -0.03}).distance == Approx(0.0005));

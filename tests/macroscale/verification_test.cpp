@@ -10,12 +10,12 @@
 #include "tests/macroscale/steps.h"
 
 using namespace heddle::macroscale;
+using Eigen::Vector3d;
+using Eigen::VectorXd;
 using heddle::Curve;
 using heddle::test::make_fabric;
 using heddle::test::run_steps;
 using heddle::test::SampleFabric;
-using Eigen::Vector3d;
-using Eigen::VectorXd;
 
 namespace {
 
@@ -38,7 +38,8 @@ Vector3d in_frame(const Vector3d& reference, double angle) {
 }
 
 // Torque of the frame = power of its bars' reactions over the rate of the angle, by a small turn.
-double frame_torque(const heddle::mesoscale::FabricProperties& fabric, double side, double spacing, double turned, double angle) {
+double frame_torque(const heddle::mesoscale::FabricProperties& fabric, double side, double spacing,
+                    double turned, double angle) {
   Scene scene;
   scene.blank = make_blank({side, side}, spacing, turned);
   scene.fabric = &fabric;
@@ -59,7 +60,8 @@ double frame_torque(const heddle::mesoscale::FabricProperties& fabric, double si
 
 }  // namespace
 
-TEST_CASE("V3: picture frame torque of a net with diagonal springs is the closed form", "[macroscale][verification]") {
+TEST_CASE("V3: picture frame torque of a net with diagonal springs is the closed form",
+          "[macroscale][verification]") {
   const double k = 200.0, side = 0.1, angle = 0.6;
   const auto fabric = diagonal_net(k);
   const double s = std::sin(angle), c = std::cos(angle);
@@ -68,21 +70,25 @@ TEST_CASE("V3: picture frame torque of a net with diagonal springs is the closed
   CHECK(frame_torque(fabric, side, 0.01, 0.0, angle) == Approx(exact).epsilon(1e-6));
 }
 
-TEST_CASE("V3: with tows turned 10 degrees against the frame the net locks: aligned meshes are not a detail", "[macroscale][verification]") {
+TEST_CASE("V3: with tows turned 10 degrees against the frame the net locks: aligned meshes are not a detail",
+          "[macroscale][verification]") {
   const auto fabric = diagonal_net(200.0);
   const double aligned = frame_torque(fabric, 0.1, 0.01, 0.0, 0.1);
   const double turned = frame_torque(fabric, 0.1, 0.01, 10.0 * std::numbers::pi / 180.0, 0.1);
   CHECK(turned > 50.0 * aligned);
 }
 
-TEST_CASE("V3: inner nodes of a driven picture frame stay on the uniform shear by equilibrium alone", "[macroscale][verification]") {
+TEST_CASE("V3: inner nodes of a driven picture frame stay on the uniform shear by equilibrium alone",
+          "[macroscale][verification]") {
   const auto fabric = diagonal_net(200.0);
   Scene scene;
   scene.blank = make_blank({0.1, 0.1}, 0.02);
   scene.fabric = &fabric;
   scene.shear_rate = false;
   scene.held.assign(3 * scene.blank.nodes(), 0);
-  const auto on_frame = [&](int i) { return std::max(std::abs(scene.blank.reference[i].x()), std::abs(scene.blank.reference[i].y())) > 0.0499; };
+  const auto on_frame = [&](int i) {
+    return std::max(std::abs(scene.blank.reference[i].x()), std::abs(scene.blank.reference[i].y())) > 0.0499;
+  };
   for (int i = 0; i < scene.blank.nodes(); ++i)
     for (int c = 0; c < 3; ++c) scene.held[3 * i + c] = on_frame(i);
   System system(scene);
@@ -96,7 +102,8 @@ TEST_CASE("V3: inner nodes of a driven picture frame stay on the uniform shear b
     CHECK((state.node(i) - in_frame(scene.blank.reference[i], 0.6)).norm() < 1e-6);
 }
 
-TEST_CASE("V10: a sphere on a compliant layer carries 2 pi R times the integral of the pressure curve", "[macroscale][verification]") {
+TEST_CASE("V10: a sphere on a compliant layer carries 2 pi R times the integral of the pressure curve",
+          "[macroscale][verification]") {
   const auto fabric = make_fabric({});
   const double radius = 0.07, depth = 0.3e-3;
   const auto force = [&](double spacing) {
@@ -167,7 +174,8 @@ void settle(System& system, State& state) {
 
 }  // namespace
 
-TEST_CASE("V11: a pushed patch sticks below mu N with creep under the smoothing speed, and slides above it", "[macroscale][verification]") {
+TEST_CASE("V11: a pushed patch sticks below mu N with creep under the smoothing speed, and slides above it",
+          "[macroscale][verification]") {
   const double push = GENERATE(10.0, 14.9, 20.0);
   CAPTURE(push);
   Patch patch(push);
@@ -188,7 +196,8 @@ TEST_CASE("V11: a pushed patch sticks below mu N with creep under the smoothing 
   }
 }
 
-TEST_CASE("V11: a cycle of slip to and fro costs four mu N times its amplitude", "[macroscale][verification]") {
+TEST_CASE("V11: a cycle of slip to and fro costs four mu N times its amplitude",
+          "[macroscale][verification]") {
   Patch patch(0.0);
   patch.scene.held.assign(3 * patch.scene.blank.nodes(), 0);
   for (int i = 0; i < patch.scene.blank.nodes(); ++i) patch.scene.held[3 * i] = 1;
@@ -199,7 +208,8 @@ TEST_CASE("V11: a cycle of slip to and fro costs four mu N times its amplitude",
   const auto swing = [&](double time, VectorXd& x) {
     const double phase = std::fmod(time, 1.0);
     const double u = phase < 0.25 ? 4.0 * phase : phase < 0.75 ? 2.0 - 4.0 * phase : 4.0 * phase - 4.0;
-    for (int i = 0; i < patch.scene.blank.nodes(); ++i) x[3 * i] = patch.scene.blank.reference[i].x() + amplitude * u;
+    for (int i = 0; i < patch.scene.blank.nodes(); ++i)
+      x[3 * i] = patch.scene.blank.reference[i].x() + amplitude * u;
   };
   double lost = 0.0;
   run_steps(system, state, 0.01, 100, swing, [&](const StepData& step, const State& end) {
@@ -208,7 +218,8 @@ TEST_CASE("V11: a cycle of slip to and fro costs four mu N times its amplitude",
   CHECK(lost == Approx(4.0 * 0.3 * patch.weight * amplitude).epsilon(0.005));
 }
 
-TEST_CASE("V12: a strip in free flight keeps its momentum, and its ledger closes", "[macroscale][verification]") {
+TEST_CASE("V12: a strip in free flight keeps its momentum, and its ledger closes",
+          "[macroscale][verification]") {
   const auto fabric = make_fabric({.rate_consistency = 0.5});
   Scene scene;
   scene.blank = make_blank({0.08, 0.02}, 0.01);
@@ -230,12 +241,15 @@ TEST_CASE("V12: a strip in free flight keeps its momentum, and its ledger closes
   options.relative_tolerance = 0.0;
   double residual = 0.0, stored = 0.0, kinetic = 0.0;
   for (int k = 0; k < scene.unknowns(); ++k) kinetic += 0.5 * system.mass(k) * state.v[k] * state.v[k];
-  run_steps(system, state, 1e-3, 30, {}, [&](const StepData& step, const State& end) {
-    const auto books = account(system, step, end);
-    residual += books.ledger.residual();
-    stored += std::abs(books.ledger.stored());
-    CHECK(books.forces.imbalance < 1e-9);
-  }, options);
+  run_steps(
+      system, state, 1e-3, 30, {},
+      [&](const StepData& step, const State& end) {
+        const auto books = account(system, step, end);
+        residual += books.ledger.residual();
+        stored += std::abs(books.ledger.stored());
+        CHECK(books.forces.imbalance < 1e-9);
+      },
+      options);
   CHECK((momentum(state) - start).norm() < 1e-12 * start.norm() + 1e-14);
   CHECK(std::abs(residual) < 0.01 * kinetic);
   CHECK(stored > 0.001 * kinetic);  // something was exchanged

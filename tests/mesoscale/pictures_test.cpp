@@ -1,0 +1,46 @@
+#include "mesoscale/pictures.h"
+
+#include <catch2/catch.hpp>
+#include <cmath>
+#include <map>
+#include <string>
+#include <utility>
+
+#include "table1.h"
+
+using namespace heddle::mesoscale;
+using heddle::test::radians;
+using heddle::test::table1;
+
+TEST_CASE("tow surfaces are closed: every edge is run once each way", "[pictures]") {
+  const TriMesh mesh = tow_surfaces(unit_cell(table1(), radians(25.0)), 8, 6);
+  std::map<std::pair<int, int>, int> edges;
+  for (const auto& t : mesh.triangles)
+    for (std::size_t k = 0; k < 3; ++k) ++edges[{t[k], t[(k + 1) % 3]}];
+  for (const auto& [edge, count] : edges) {
+    REQUIRE(count == 1);
+    REQUIRE(edges.count({edge.second, edge.first}) == 1);
+  }
+}
+
+TEST_CASE("tow surfaces enclose section area times pitch and point outwards", "[pictures]") {
+  const double angle = radians(GENERATE(0.0, 25.0));
+  const UnitCell cell = unit_cell(table1(), angle);
+  const double expected = 4.0 * 2.0 * area(cell.section) * cell.pitch * std::cos(angle);
+  CHECK(volume(tow_surfaces(cell, 12, 60)) == Approx(expected).epsilon(0.002));
+}
+
+TEST_CASE("a cut along a warp shows it as a band and every weft as a section", "[pictures]") {
+  const std::vector<Outline> cut = warp_cut(unit_cell(table1(), 0.0));
+  REQUIRE(cut.size() == 4);  // one warp, two wefts and the first again
+  CHECK(cut[0].tow == TowDirection::warp);
+  CHECK(cut[1].tow == TowDirection::weft);
+  double highest = 0.0, lowest = 0.0;
+  for (const Outline& outline : cut)
+    for (const auto& point : outline.points) {
+      highest = std::max(highest, point[1]);
+      lowest = std::min(lowest, point[1]);
+    }
+  CHECK(highest == Approx(0.75e-3).epsilon(1e-12));
+  CHECK(lowest == Approx(-0.75e-3).epsilon(1e-12));
+}

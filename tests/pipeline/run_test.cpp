@@ -1,0 +1,219 @@
+// Whole runs: every shipped configuration at small size, through the same functions as the command line.
+#include <catch2/catch.hpp>
+
+#include <unistd.h>
+
+#include <cmath>
+#include <filesystem>
+#include <fstream>
+#include <map>
+#include <sstream>
+
+#include "core/problem.h"
+#include "pipeline/commands.h"
+#include "pipeline/outputs.h"
+
+using namespace heddle;
+namespace fs = std::filesystem;
+
+namespace {
+
+// A folder of this test process alone, removed at the end.
+class Scratch {
+ public:
+  Scratch() : path_(fs::temp_directory_path() / ("heddle-run-test-" + std::to_string(getpid()))) {
+    fs::create_directories(path_);
+  }
+  ~Scratch() {
+    std::error_code ignored;  // a folder that stays behind is no failure of the test
+    fs::remove_all(path_, ignored);
+  }
+  fs::path operator/(const std::string& name) const { return path_ / name; }
+
+ private:
+  fs::path path_;
+};
+
+const std::vector<std::string> small = {"blank.spacing=20 mm", "process.steps=12",
+                                        "process.punch={stroke: 30 mm, time: 0.18 s, slow_down: 0.01 s}"};
+
+pipeline::RunOptions options_for(const std::string& config, const fs::path& output,
+                                 std::vector<std::string> settings) {
+  pipeline::RunOptions options;
+  options.file = fs::path(HEDDLE_SOURCE_DIR) / "configs" / config;
+  options.output = output;
+  options.assignments = std::move(settings);
+  options.quiet = true;
+  return options;
+}
+
+std::vector<std::string> with(std::vector<std::string> base, const std::string& more) {
+  base.push_back(more);
+  return base;
+}
+
+// One number of summary.json, by its key.
+double number(const fs::path& folder, const std::string& key) {
+  const std::string text = pipeline::read_file(folder / "summary.json");
+  const auto at = text.find('"' + key + "\": ");
+  REQUIRE(at != std::string::npos);
+  return std::stod(text.substr(at + key.size() + 4));
+}
+
+double stamped(const Scratch& scratch, const std::string& name, const std::vector<std::string>& settings,
+               const std::string& key) {
+  REQUIRE(pipeline::run_case(options_for("thermostamping.yaml", scratch / name, settings)) ==
+          pipeline::exit_done);
+  return number(scratch / name, key);
+}
+
+// Every file below a folder but those that hold times.
+std::map<std::string, std::string> contents(const fs::path& folder) {
+  std::map<std::string, std::string> files;
+  for (const auto& entry : fs::recursive_directory_iterator(folder)) {
+    const std::string name = fs::relative(entry.path(), folder).string();
+    if (entry.is_regular_file() && name != "manifest.json" && name != "log.txt")
+      files[name] = pipeline::read_file(entry.path());
+  }
+  return files;
+}
+
+}  // namespace
+
+TEST_CASE("the shipped stamping runs small, writes what it promises, and twice the same bytes",
+          "[pipeline][run]") {
+  const Scratch scratch;
+  for (const char* name : {"a", "b"})
+    REQUIRE(pipeline::run_case(options_for("thermostamping.yaml", scratch / name, small)) ==
+            pipeline::exit_done);
+  const auto a = contents(scratch / "a"), b = contents(scratch / "b");
+  for (const char* name :
+       {"resolved.yaml", "summary.json", "report.html", "mesoscale/fabric.json", "mesoscale/contact.csv",
+        "mesoscale/tows.stl", "friction/friction_test.csv", "friction/curve.csv", "macroscale/history.csv",
+        "macroscale/blank.pvd", "macroscale/blank_0012.vtu"})
+    CHECK(a.count(name) == 1);
+  REQUIRE(a.size() == b.size());
+  for (const auto& [name, bytes] : a) {
+    INFO(name);
+    CHECK((bytes == b.at(name)));
+  }
+  CHECK(fs::exists(scratch / "a" / "manifest.json"));
+  CHECK(fs::exists(scratch / "a" / "log.txt"));
+  CHECK(number(scratch / "a", "energy_residual_max") < 0.01);
+  CHECK(number(scratch / "a", "force_balance_residual_max") < 1e-3);
+
+  // What was resolved is a configuration of its own, with the same outcome.
+  pipeline::RunOptions again = options_for("", scratch / "c", {});
+  again.file = scratch / "a" / "resolved.yaml";
+  REQUIRE(pipeline::run_case(again) == pipeline::exit_done);
+  CHECK((pipeline::read_file(scratch / "c" / "macroscale/history.csv") == a.at("macroscale/history.csv")));
+}
+
+TEST_CASE("the shipped friction test and unit cell run", "[pipeline][run]") {
+  const Scratch scratch;
+  CHECK(pipeline::friction_case(options_for("friction_test.yaml", scratch / "friction", {})) ==
+        pipeline::exit_done);
+  CHECK(pipeline::weave_case(options_for("unit_cell.yaml", scratch / "weave", {})) == pipeline::exit_done);
+  CHECK(number(scratch / "weave", "areal_density_kg_m2") == Approx(0.703).epsilon(0.005));
+  CHECK_FALSE(fs::exists(scratch / "weave" / "friction"));
+}
+
+TEST_CASE("a folder that holds another case is left alone without --force", "[pipeline][run][wrong input]") {
+  const Scratch scratch;
+  const auto unit_cell = options_for("unit_cell.yaml", scratch / "x", {});
+  REQUIRE(pipeline::weave_case(unit_cell) == pipeline::exit_done);
+  const auto before = contents(scratch / "x");
+  auto other = options_for("friction_test.yaml", scratch / "x", {});
+  CHECK_THROWS_WITH(pipeline::friction_case(other),
+                    Catch::Contains("holds another case: unit_cell") && Catch::Contains("--force"));
+  CHECK((contents(scratch / "x") == before));
+  CHECK(pipeline::weave_case(unit_cell) == pipeline::exit_done);  // the same case goes in again
+  other.force = true;
+  CHECK(pipeline::friction_case(other) == pipeline::exit_done);
+
+  std::ofstream(scratch / "letter.txt") << "mine";
+  fs::create_directories(scratch / "home");
+  std::ofstream(scratch / "home" / "letter.txt") << "mine";
+  CHECK_THROWS_WITH(pipeline::weave_case(options_for("unit_cell.yaml", scratch / "home", {})),
+                    Catch::Contains("not a run of heddle"));
+}
+
+TEST_CASE("an effect at its off value restores the baseline byte for byte, and acts linearly when small",
+          "[pipeline][run][effect]") {
+  const Scratch scratch;
+  const auto base = with(small, "process.tool_temperature=140 degC");
+  const auto history = [&](const std::string& name, const std::string& effects) {
+    stamped(scratch, name, with(base, effects), "peak_punch_force_N");
+    return pipeline::read_file(scratch / name / "macroscale/history.csv");
+  };
+  const std::string off = history("absent", "effects={}");
+  CHECK((history("off", "effects={tool_temperature_shift: {slope: 0 1/K, reference: 85 degC}}") == off));
+
+  const auto work = [&](const std::string& name, const std::string& slope) {
+    stamped(scratch, name,
+            with(base, "effects={tool_temperature_shift: {slope: " + slope + " 1/K, reference: 85 degC}}"),
+            "peak_punch_force_N");
+    return number(scratch / name, "peak_punch_force_N");
+  };
+  const double none = number(scratch / "absent", "peak_punch_force_N");
+  const double once = work("once", "-1e-6") - none, twice = work("twice", "-2e-6") - none;
+  CAPTURE(none, once, twice);
+  CHECK(once != 0.0);
+  CHECK(twice == Approx(2.0 * once).epsilon(0.01));
+}
+
+TEST_CASE("the weave acts on friction: a wider gap lowers the contact area, mu and the punch force",
+          "[pipeline][run]") {
+  const Scratch scratch;
+  const double narrow = stamped(scratch, "narrow", small, "peak_punch_force_N");
+  const double wide = stamped(scratch, "wide", with(small, "weave.gap=1.5 mm"), "peak_punch_force_N");
+  CHECK(number(scratch / "wide", "contact_area_fraction_binder") <
+        0.95 * number(scratch / "narrow", "contact_area_fraction_binder"));
+  CHECK(wide < 0.99 * narrow);
+
+  // Friction test at binder pressure (8.6 kPa on the plate of the rig): mu follows the area, and with nominal
+  // pressure it does not move.
+  const auto mu = [&](const std::string& name, const std::string& gap, const std::string& pressure) {
+    const auto options = options_for(
+        "friction_test.yaml", scratch / name,
+        {"weave.gap=" + gap, "friction.contact_pressure=" + pressure,
+         "friction.calibration={plate_area: 0.01 m^2}", "friction.scale=0.33", "friction.exponent=0.135",
+         "effects={}", "friction_test={data: data/friction_binder_pressure.csv}"});
+    REQUIRE(pipeline::friction_case(options) == pipeline::exit_done);
+    std::stringstream table(pipeline::read_file(scratch / name / "friction/friction_test.csv"));
+    std::string header, row, cell;
+    std::getline(table, header);
+    std::getline(table, row);
+    std::stringstream cells(row);
+    for (int k = 0; k < 7; ++k) std::getline(cells, cell, ',');
+    return std::stod(cell);
+  };
+  CHECK(mu("r1", "1.5 mm", "real") < 0.99 * mu("r0", "0.75 mm", "real"));
+  CHECK(mu("n1", "1.5 mm", "nominal") == mu("n0", "0.75 mm", "nominal"));
+}
+
+TEST_CASE(
+    "at full size: constant mu without resin rate is blind to punch speed, mass scaling is not, resin rate "
+    "is",
+    "[pipeline][run][slow]") {
+  const Scratch scratch;
+  const std::vector<std::string> coulomb = {"friction={law: coulomb, coefficient: 0.3}"};
+  const auto peak = [&](const std::string& name, const std::string& rate, const std::string& speed,
+                        const std::string& mass) {
+    return stamped(
+        scratch, name,
+        with(with(with(coulomb, "fabric.shear_rate=" + rate), "process.punch.speed_scale=" + speed),
+             "artefact.mass_scaling=" + mass),
+        "peak_punch_force_N");
+  };
+  const double base = peak("v1", "off", "1", "1");
+  CHECK(peak("v05", "off", "0.5", "1") == Approx(base).epsilon(0.002));
+  CHECK(peak("v2", "off", "2", "1") == Approx(base).epsilon(0.002));
+  CHECK(std::abs(peak("v2m", "off", "2", "1000") / base - 1.0) > 0.1);
+  const double slow = peak("r05", "on", "0.5", "1"), middle = peak("r1", "on", "1", "1"),
+               fast = peak("r2", "on", "2", "1");
+  const double signature = (fast - middle) / (middle - slow);
+  CAPTURE(slow, middle, fast);
+  CHECK(signature > 1.0);
+  CHECK(signature < 2.5);
+}

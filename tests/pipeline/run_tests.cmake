@@ -1,0 +1,1 @@
+heddle_test(run SOURCES run_test.cpp LIBRARIES heddle::run)
