@@ -21,6 +21,8 @@ struct WeaveSpec {
   double resin_density = 905.0;       ///< [kg/m^3]
   double fibre_modulus = 72.4e9;      ///< [Pa]
   double fibre_diameter = 18.5e-6;    ///< [m], recalled
+
+  bool operator==(const WeaveSpec&) const = default;
 };
 
 enum class CellState { as_woven, consolidated };

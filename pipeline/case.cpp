@@ -30,19 +30,19 @@ void take(const Settings& settings, const std::string& path, std::string& value)
   if (settings.has(path)) value = settings.text(path);
 }
 
-mesoscale::WeaveSpec weave_of(const Settings& settings) {
+mesoscale::WeaveSpec weave_of(const Settings& settings, const std::string& block) {
   mesoscale::WeaveSpec weave;
-  take(settings, "weave.pattern", weave.pattern);
-  take(settings, "weave.tow_width", weave.tow_width);
-  take(settings, "weave.gap", weave.gap);
-  take(settings, "weave.tow_thickness", weave.tow_thickness);
-  take(settings, "weave.fabric_thickness", weave.fabric_thickness);
-  take(settings, "weave.linear_density", weave.linear_density);
-  take(settings, "weave.fibre_mass_fraction", weave.fibre_mass_fraction);
-  take(settings, "weave.fibre_density", weave.fibre_density);
-  take(settings, "weave.resin_density", weave.resin_density);
-  take(settings, "weave.fibre_modulus", weave.fibre_modulus);
-  take(settings, "weave.fibre_diameter", weave.fibre_diameter);
+  take(settings, block + ".pattern", weave.pattern);
+  take(settings, block + ".tow_width", weave.tow_width);
+  take(settings, block + ".gap", weave.gap);
+  take(settings, block + ".tow_thickness", weave.tow_thickness);
+  take(settings, block + ".fabric_thickness", weave.fabric_thickness);
+  take(settings, block + ".linear_density", weave.linear_density);
+  take(settings, block + ".fibre_mass_fraction", weave.fibre_mass_fraction);
+  take(settings, block + ".fibre_density", weave.fibre_density);
+  take(settings, block + ".resin_density", weave.resin_density);
+  take(settings, block + ".fibre_modulus", weave.fibre_modulus);
+  take(settings, block + ".fibre_diameter", weave.fibre_diameter);
   return weave;
 }
 
@@ -70,7 +70,7 @@ mesoscale::FormingSpec forming_of(const Settings& settings) {
 
 mesoscale::CellSpec cell_of(const Settings& settings) {
   mesoscale::CellSpec cell;
-  cell.weave = weave_of(settings);
+  cell.weave = weave_of(settings, "weave");
   cell.state = settings.is("cell.state", "consolidated") ? mesoscale::CellState::consolidated
                                                          : mesoscale::CellState::as_woven;
   cell.resin = resin_of(settings);
@@ -147,6 +147,7 @@ FrictionSpec friction_of(const Settings& settings, const std::filesystem::path& 
   const bool stribeck = settings.is("friction.law", "stribeck");
   if (stribeck && settings.has("friction.calibration.data")) {
     friction.calibration_data = folder / settings.text("friction.calibration.data");
+    friction.calibration_weave = weave_of(settings, "friction.calibration.weave");
     friction.fit_temperature_slope = slope_is_fitted(settings);
   }
   return friction;

@@ -21,6 +21,7 @@ struct FrictionSpec {
   friction::FrictionRig rig;    ///< plate area and its band; the band is {area, area} where none was given
   bool has_plate_area = false;  ///< Coulomb friction needs none
   std::filesystem::path calibration_data;  ///< empty: the constants of the law were given
+  mesoscale::WeaveSpec calibration_weave;  ///< of the fabric that was pulled; Table 1 unless given
   bool fit_temperature_slope = false;      ///< `slope: fitted`; else the slope in the model is held
   bool calibrated() const { return !calibration_data.empty(); }
 };

@@ -74,6 +74,27 @@ std::vector<Key> weave_keys() {
   };
 }
 
+// The weave of the calibration pulls: the keys of `weave`, each with Table 1 as its default. A weave under study may
+// differ from the one that was pulled, and the law must not be fitted anew to it.
+std::vector<Key> calibration_weave_keys() {
+  const std::vector<std::pair<std::string, std::string>> table1 = {
+      {"pattern", "plain"}, {"tow_width", "4.64 mm"}, {"gap", "0.75 mm"}, {"tow_thickness", "0.75 mm"},
+      {"fabric_thickness", "1.5 mm"}, {"linear_density", "1872 tex"}, {"fibre_mass_fraction", "60 %"}};
+  std::vector<Key> keys;
+  for (Key key : weave_keys()) {
+    if (!key.path.starts_with("weave.")) continue;
+    for (const auto& [name, value] : table1)
+      if (key.path == "weave." + name) key.default_text = value;
+    key.path = "friction.calibration." + key.path;
+    key.presence = defaulted;
+    key.stage = Stage::friction;
+    key.used_when = "friction.law=stribeck friction.contact_pressure=real";
+    key.help = "Of the fabric that was pulled. " + key.help;
+    keys.push_back(std::move(key));
+  }
+  return keys;
+}
+
 std::vector<Key> resin_keys() {
   return {
       {.path = "resin.rheology", .type = KeyType::choice, .presence = defaulted, .default_text = "power_law",
@@ -278,6 +299,7 @@ std::vector<Key> all_keys() {
   append(keys, resin_keys());
   append(keys, forming_keys());
   append(keys, friction_keys());
+  append(keys, calibration_weave_keys());
   append(keys, process_keys());
   append(keys, blank_and_tool_keys());
   append(keys, effect_keys());

@@ -48,6 +48,14 @@ double exponent_between(const friction::AreaFunction& area,
   return std::log(area(high).first / area(low).first) / std::log(high / low);
 }
 
+// The contact area of the fabric that was pulled: that of this case if both are the same weave.
+mesoscale::FabricProperties pulled_fabric(const Case& a_case, const mesoscale::FabricProperties* fabric) {
+  mesoscale::CellSpec cell = *a_case.cell;
+  if (fabric && cell.weave == a_case.friction->calibration_weave) return *fabric;
+  cell.weave = a_case.friction->calibration_weave;
+  return mesoscale::analyse(cell).fabric;
+}
+
 void calibrate_law(FrictionStage& stage, const FrictionSpec& spec, const friction::AreaFunction& area,
                    const friction::AreaFunction& weave_area) {
   const auto rows = friction::read_friction_table(spec.calibration_data.string());
@@ -139,11 +147,16 @@ FrictionStage run_friction_stage(const Case& a_case, const mesoscale::FabricProp
                        "needs a weave: the contact area comes from it",
                        "Add `weave:`, or write `contact_pressure: nominal`."}});
   const friction::AreaFunction area = area_function(spec, fabric);
-  FrictionSpec real = spec;
-  real.contact_pressure = macroscale::ContactPressure::real;
   FrictionStage stage;
   stage.model = spec.model;
-  if (spec.calibrated()) calibrate_law(stage, spec, area, area_function(real, fabric));
+  if (spec.calibrated()) {
+    // With nominal pressure and no weave there is no area to compare with.
+    const auto pulled = a_case.cell ? std::optional(pulled_fabric(a_case, fabric)) : std::nullopt;
+    FrictionSpec real = spec;
+    real.contact_pressure = macroscale::ContactPressure::real;
+    calibrate_law(stage, spec, area_function(spec, pulled ? &*pulled : nullptr),
+                  area_function(real, pulled ? &*pulled : nullptr));
+  }
   if (a_case.friction_test) {
     const auto rows = friction::read_friction_table(a_case.friction_test->data.string());
     const auto results = friction::run_friction_tests(stage.model, rows, spec.rig, area);
