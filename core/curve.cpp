@@ -74,7 +74,8 @@ std::size_t Curve::interval(double x) const {
   if (inverse_step_ > 0.0) {
     const double position = (x - x_.front()) * inverse_step_;
     const double last = static_cast<double>(x_.size() - 2);
-    return static_cast<std::size_t>(std::clamp(position, 0.0, last));
+    if (!(position > 0.0)) return 0;  // a NaN as well: it must come out as NaN, not as a wild index
+    return static_cast<std::size_t>(std::min(position, last));
   }
   const auto upper = std::upper_bound(x_.begin() + 1, x_.end() - 1, x);
   return static_cast<std::size_t>(upper - x_.begin()) - 1;

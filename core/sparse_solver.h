@@ -32,19 +32,13 @@ class SparseSolver {
   bool factorise();
   /// Solves in place with the last factor. Precondition: factorise() returned true.
   void solve(std::span<double> right_hand_side);
-  double factor_nonzeros() const;
-  double factor_flops() const;
 
  private:
   struct Implementation;
   std::unique_ptr<Implementation> implementation_;
 };
 
-/// Name of the BLAS behind the solver, with its kernel; and a warning if it is not OpenBLAS ("" if it is).
-struct BlasReport {
-  std::string name;
-  std::string warning;
-};
-BlasReport blas_report();
+/// Name of the BLAS behind the solver, with its kernels.
+std::string blas_name();
 
 }  // namespace heddle

@@ -70,7 +70,8 @@ struct Place {
 Place place(double x, double x0, double dx, int n) {
   const double position = (x - x0) / dx;
   const double inside = std::clamp(position, 0.0, static_cast<double>(n - 1));
-  const int index = std::min(static_cast<int>(inside), n - 2);
+  // A NaN must come out as NaN, not as a wild index.
+  const int index = inside > 0.0 ? std::min(static_cast<int>(inside), n - 2) : 0;
   return {index, inside - index, position - inside};
 }
 

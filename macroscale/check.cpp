@@ -1,4 +1,5 @@
 #include <cmath>
+#include <numbers>
 
 #include <fmt/format.h>
 
@@ -40,6 +41,16 @@ Problems check(const StampingSpec& spec) {
            mm(blank.spacing),
            fmt::format("must satisfy 0 < spacing < {} (an eighth of the blank)", mm(0.25 * half)),
            "4.5 mm suits the shipped case.");
+  const double cells = blank.size[0] * blank.size[1] / (blank.spacing * blank.spacing);
+  f.demand(blank.spacing <= 0.0 || cells <= 5e5, "blank.spacing.nodes", "blank.spacing", mm(blank.spacing),
+           fmt::format("must give at most 500000 cells; this gives {:.3g}", cells),
+           "A few thousand cells resolve a part; the shipped case has 5184.");
+  f.demand(blank.orientation == 0.0, "blank.orientation.range", "blank.orientation",
+           fmt::format("{:g} deg", blank.orientation * 180.0 / std::numbers::pi), "must be 0 deg",
+           "Blanks cut at an angle to their tows come with a later version.");
+  f.demand(process.stroke < half, "process.punch.stroke.reach", "process.punch.stroke", mm(process.stroke),
+           fmt::format("must be less than half the blank ({})", mm(half)),
+           "A deeper stroke pulls the blank out of the binder.");
   f.demand(blank.plies == 1, "blank.plies.range", "blank.plies", fmt::format("{}", blank.plies), "must be 1",
            "Several plies come with a later version; run one.");
   f.demand(punch.radius > 0.0, "tools.punch.radius.range", "tools.punch.radius", mm(punch.radius),

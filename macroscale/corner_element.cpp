@@ -15,11 +15,11 @@ using Eigen::Vector3d;
 
 // Shear rate below which the power law gives way to a Newtonian start [1/s]: for n < 1 the bare power law has
 // an infinite tangent at rest. Forming rates are 0.1 to 10 1/s; the floor moves stresses there by less than
-// 1e-5.
+// 4e-5.
 constexpr double rate_floor = 1e-3;
 
-// |s| is kept below 1 where 1/cos(gamma) enters; a corner this closed (89.7 deg) is reported as inverted
-// elsewhere.
+// |s| is kept below 1 where 1/cos(gamma) enters; a step that closes a corner beyond 89 deg is
+// rejected (solve).
 constexpr double sine_limit = 0.99999;
 
 struct Kinematics {

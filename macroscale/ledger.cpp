@@ -152,9 +152,12 @@ StepAccount account(const System& system, const StepData& step, const State& end
   ledger.numerical += compaction.work - compaction.stored;
 
   if (scene.stabilisation > 0.0)
-    for (int i = 0; i < blank.nodes(); ++i)
-      ledger.artefact +=
-          scene.stabilisation * blank.node_area[i] / step.dt * (end.node(i) - start.node(i)).squaredNorm();
+    for (int i = 0; i < blank.nodes(); ++i) {
+      const Vector3d moved = end.node(i) - start.node(i);
+      const Vector3d drag = scene.stabilisation * blank.node_area[i] / step.dt * moved;
+      ledger.artefact += drag.dot(moved);
+      on_blank -= drag;
+    }
   for (std::size_t k = 0; k < scene.load.size(); ++k) {
     const Eigen::Index n = static_cast<Eigen::Index>(k);
     ledger.work_held += scene.load[k] * (end.x[n] - start.x[n]);

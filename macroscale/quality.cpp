@@ -166,8 +166,8 @@ void summarise(StampingResult& result, const Blank& blank, const State& state, c
     if (row.work_punch > work_floor && stored > 0.0)
       s.twist_share = std::max(s.twist_share, row.energy_twist / stored);
   }
-  s.force_balance_residual_max = peak_force_balance / largest_force;
-  s.numerical_dissipation_share = last.dissipation_numerical / last.work_punch;
+  if (largest_force > 0.0) s.force_balance_residual_max = peak_force_balance / largest_force;
+  if (last.work_punch > 0.0) s.numerical_dissipation_share = last.dissipation_numerical / last.work_punch;
   const double rubbed = last.friction_punch + last.friction_die + last.friction_binder;
   s.friction_work_outside = rubbed > 0.0 ? last.friction_work_outside / rubbed : 0.0;
   s.symmetry_gap_shear = s.symmetry_gap_draw_in = -1.0;

@@ -2,9 +2,11 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 
 #include <fmt/format.h>
 #include <tbb/parallel_for.h>
+#include <Eigen/Geometry>
 
 #include "core/problem.h"
 #include "friction/hersey.h"
@@ -53,7 +55,8 @@ FrictionPoints freeze(const System& system, const StepData& step, const VectorXd
   return points;
 }
 
-// Sum over all points of the change of the friction force between two frozen sets, over its sum.
+// Sum over all points of the size of the change of the friction force between two frozen sets, over the sum
+// of its size: loads, normals and coefficients all count. 1 where all contact was lost.
 double lag_residual(const System& system, const StepData& step, const VectorXd& x,
                     const FrictionPoints& before, const FrictionPoints& after) {
   const FrictionSettings settings = system.friction_settings();
@@ -62,14 +65,15 @@ double lag_residual(const System& system, const StepData& step, const VectorXd& 
     for (int i = 0; i < static_cast<int>(after[k].size()); ++i) {
       if (after[k][i].load == 0.0 && before[k][i].load == 0.0) continue;
       const Vector3d v = system.relative_velocity(step, x, k, i);
-      const auto size = [&](const FrictionPoint& p) {
-        return p.load > 0.0 ? p.load * law_at(settings, p, slip_velocity(p, v).norm()).mu : 0.0;
+      const auto force = [&](const FrictionPoint& p) -> Vector3d {
+        return p.load > 0.0 ? friction_force(settings, p, v) : Vector3d::Zero();
       };
-      const double now = size(after[k][i]);
-      change += std::abs(now - size(before[k][i]));
-      sum += now;
+      const Vector3d now = force(after[k][i]);
+      change += (now - force(before[k][i])).norm();
+      sum += now.norm();
     }
-  return sum > 0.0 ? change / sum : 0.0;
+  if (sum > 0.0) return change / sum;
+  return change > 0.0 ? 1.0 : 0.0;
 }
 
 double mean_contact_force(const System& system, const StepData& step, const VectorXd& x) {
@@ -98,12 +102,19 @@ Largest largest(const VectorXd& g) {
   return {value, static_cast<int>(at)};
 }
 
-void demand_finite(const VectorXd& values, const char* quantity, double time) {
+// "node 12", or "loaded tool 0" for the unknowns behind the nodes.
+std::string name_of(const System& system, int unknown) {
+  const int nodes = system.scene().blank.nodes();
+  return unknown < 3 * nodes ? fmt::format("node {}", unknown / 3)
+                             : fmt::format("loaded tool {}", unknown - 3 * nodes);
+}
+
+void demand_finite(const System& system, const VectorXd& values, const char* quantity, double time) {
   if (values.allFinite()) return;
   for (Eigen::Index k = 0; k < values.size(); ++k)
     if (!std::isfinite(values[k]))
-      throw NumericalError(fmt::format("{} of node {} (component {}) is not finite at t = {:.6g} s", quantity,
-                                       k / 3, k % 3, time));
+      throw NumericalError(fmt::format("{} of {} (component {}) is not finite at t = {:.6g} s", quantity,
+                                       name_of(system, static_cast<int>(k)), k % 3, time));
 }
 
 // Newton direction. The unfiltered Hessian is tried where the last iteration took a full step (its quadratic
@@ -115,11 +126,10 @@ struct Direction {
 };
 
 Direction newton_direction(System& system, const StepData& step, const VectorXd& x, const VectorXd& g,
-                           bool try_exact, int& factorisations) {
+                           bool try_exact) {
   Direction direction;
   const auto attempt = [&](Filter filter, double shift) {
     system.assemble(step, x, filter, shift);
-    ++factorisations;
     if (!system.solver().factorise()) return false;
     direction.dx = -g;
     system.solver().solve({direction.dx.data(), static_cast<std::size_t>(direction.dx.size())});
@@ -131,8 +141,8 @@ Direction newton_direction(System& system, const StepData& step, const VectorXd&
     return direction;
   }
   if (attempt(Filter::positive, 0.0)) return direction;
-  const double largest_diagonal = 1e6;  // [N/m], the tow stiffness per node: the scale of the diagonal
-  for (double shift = 1e-6 * largest_diagonal; shift <= largest_diagonal; shift *= 10.0)
+  const double scale = system.largest_diagonal();
+  for (double shift = 1e-6 * scale; shift <= scale; shift *= 10.0)
     if (attempt(Filter::positive, shift)) return direction;
   return direction;
 }
@@ -149,14 +159,14 @@ Pass minimise(System& system, const StepData& step, VectorXd& x, const SolveOpti
   VectorXd g = system.gradient(step, x);
   double energy = system.potential(step, x).total();
   for (int iteration = 0; iteration <= options.newton_limit; ++iteration) {
-    demand_finite(g, "residual force", step.start->time + step.dt);
+    demand_finite(system, g, "residual force", step.start->time + step.dt);
     const Largest worst = largest(g);
     summary.residual = worst.value;
-    summary.worst_node = worst.unknown / 3;
+    summary.worst = name_of(system, worst.unknown);
     if (worst.value <= tolerance) return {true, "converged"};
     if (iteration == options.newton_limit) break;
 
-    Direction direction = newton_direction(system, step, x, g, full_step, summary.factorisations);
+    Direction direction = newton_direction(system, step, x, g, full_step);
     if (!direction.found) return {false, "no descent direction: the matrix stays indefinite under any shift"};
     ++summary.newton_iterations;
     const double size = direction.dx.cwiseAbs().maxCoeff();
@@ -188,16 +198,20 @@ Pass minimise(System& system, const StepData& step, VectorXd& x, const SolveOpti
     const double moved = alpha * direction.dx.cwiseAbs().maxCoeff();
     full_step = alpha == 1.0 && size <= options.largest_increment;
     g = system.gradient(step, x);
+    if (moved < options.stagnation && direction.exact && alpha < 1.0) {
+      full_step = false;  // hardly a step along the exact direction: project before giving up
+      continue;
+    }
     if (moved < options.stagnation) {
       const Largest left = largest(g);
       summary.residual = left.value;
       if (left.value <= 10.0 * tolerance) return {true, "converged"};
-      return {false,
-              fmt::format("stagnated with a residual of {:.3g} N at node {}", left.value, left.unknown / 3)};
+      return {false, fmt::format("stagnated with a residual of {:.3g} N at {}", left.value,
+                                 name_of(system, left.unknown))};
     }
   }
-  return {false, fmt::format("{} Newton iterations left a residual of {:.3g} N at node {}",
-                             options.newton_limit, summary.residual, summary.worst_node)};
+  return {false, fmt::format("{} Newton iterations left a residual of {:.3g} N at {}", options.newton_limit,
+                             summary.residual, summary.worst)};
 }
 
 void accept(const System& system, const StepData& step, const VectorXd& x, State& end) {
@@ -231,8 +245,37 @@ void accept(const System& system, const StepData& step, const VectorXd& x, State
       memory = law.state;
       memory.slip += speed * step.dt;
       memory.dwell += step.dt;
-      memory.work_per_area += law.mu * point.context.pressure * speed * step.dt;
+      const Vector3d v = system.relative_velocity(step, x, k, i);
+      memory.work_per_area += friction_force(settings, point, v).dot(v) * step.dt / scene.blank.node_area[i];
     }
+}
+
+// What makes a converged state unusable, or "": a corner that closed or turned over, fabric pressed beyond
+// its table.
+std::string fault_of(const System& system, const StepData& step, const State& end) {
+  const Scene& scene = system.scene();
+  constexpr double closed = 89.0 * std::numbers::pi / 180.0;
+  for (std::size_t q = 0; q < scene.blank.quads.size(); ++q) {
+    const auto corners = corners_of(scene.blank.quads[q]);
+    for (std::size_t k = 0; k < 4; ++k) {
+      const Corner& c = corners[k];
+      const auto normal = [&](const State& s) {
+        return (s.node(c.along_warp) - s.node(c.node)).cross(s.node(c.along_weft) - s.node(c.node)).eval();
+      };
+      if (std::abs(end.corner_angle[4 * q + k]) > closed || normal(end).dot(normal(*step.start)) < 0.0)
+        return fmt::format("the corner at node {} closed or turned over (shear {:.1f} deg)", c.node,
+                           end.corner_angle[4 * q + k] * 180.0 / std::numbers::pi);
+    }
+  }
+  for (int k = 0; k < static_cast<int>(scene.tools.size()); ++k)
+    for (int i = 0; i < scene.blank.nodes(); ++i) {
+      const double approach = system.half_thickness() - system.tool_distance(step, end.x, k, i).distance;
+      if (approach > system.compaction().x().back())
+        return fmt::format(
+            "node {} is pressed {:.3f} mm into tool {}, beyond the compaction table ({:.3f} mm)", i,
+            1e3 * approach, k, 1e3 * system.compaction().x().back());
+    }
+  return "";
 }
 
 }  // namespace
@@ -259,6 +302,11 @@ StepSummary advance(System& system, const State& state, double dt, const std::ve
   const double tolerance = std::max(
       options.force_tolerance, options.relative_tolerance * mean_contact_force(system, old_place, state.x));
   const bool rubs = system.scene().friction && !step.frictionless;
+  const auto update = [&] {
+    FrictionPoints next = freeze(system, step, x, shear_angle);
+    summary.lag_residual = lag_residual(system, step, x, step.friction, next);
+    return next;
+  };
   for (int lag = 0; lag < options.lag_limit_iterations; ++lag) {
     ++summary.lag_iterations;
     const bool first = rubs && lag == 0;
@@ -269,18 +317,16 @@ StepSummary advance(System& system, const State& state, double dt, const std::ve
       return summary;
     }
     if (!rubs) break;
-    FrictionPoints next = freeze(system, step, x, shear_angle);
-    summary.lag_residual = lag_residual(system, step, x, step.friction, next);
-    if (summary.lag_residual < options.lag_tolerance) {
-      if (first) {
-        pass = minimise(system, step, x, options, tolerance, summary);
-        if (!pass.converged) {
-          summary.reason = pass.reason;
-          return summary;
-        }
+    FrictionPoints next = update();
+    if (first && summary.lag_residual < options.lag_tolerance) {
+      pass = minimise(system, step, x, options, tolerance, summary);
+      if (!pass.converged) {
+        summary.reason = pass.reason;
+        return summary;
       }
-      break;
+      next = update();
     }
+    if (summary.lag_residual < options.lag_tolerance) break;
     if (lag + 1 < options.lag_limit_iterations) step.friction = std::move(next);
   }
   if (summary.lag_residual > options.lag_limit) {
@@ -288,9 +334,10 @@ StepSummary advance(System& system, const State& state, double dt, const std::ve
                                  100.0 * summary.lag_residual, summary.lag_iterations);
     return summary;
   }
-  summary.converged = true;
-  summary.reason = "converged";
   accept(system, step, x, end);
+  summary.reason = fault_of(system, step, end);
+  summary.converged = summary.reason.empty();
+  if (summary.converged) summary.reason = "converged";
   return summary;
 }
 

@@ -30,10 +30,9 @@ struct StepSummary {
   std::string reason;  ///< "converged", or what went wrong in words
   int newton_iterations = 0;
   int lag_iterations = 0;
-  int factorisations = 0;
   double residual = 0.0;  ///< largest nodal residual at the end [N]
   double lag_residual = 0.0;
-  int worst_node = -1;  ///< where the residual is largest
+  std::string worst;  ///< unknown with the largest residual, by name
 };
 
 /// One time step from `state`: lag loop around projected Newton with line search.

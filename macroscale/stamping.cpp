@@ -18,6 +18,17 @@ namespace {
 
 constexpr int punch = 0, die = 1, binder = 2;  // order of the tools in the scene
 
+// Approach of each face at which the fabric carries the binder force over the ring's flat face.
+double closed_approach(const StampingSpec& spec, const Blank& blank, const Curve& compaction) {
+  const double flat = spec.binder.inner_radius + spec.binder.edge_fillet;
+  double area = 0.0;
+  for (int i = 0; i < blank.nodes(); ++i)
+    if (blank.reference[i].head<2>().norm() >= flat) area += blank.node_area[i];
+  return approach_at(compaction, spec.process.binder_force / area);
+}
+
+// Die and binder stand where they have closed on a flat blank, so that its midplane is at z = 0 and the punch
+// touches it at t = 0 whatever the binder force.
 Scene stamping_scene(const StampingSpec& spec, const mesoscale::FabricProperties& fabric,
                      const friction::Model& friction) {
   Scene scene;
@@ -25,10 +36,12 @@ Scene stamping_scene(const StampingSpec& spec, const mesoscale::FabricProperties
   scene.fabric = &fabric;
   scene.friction = &friction;
   const double half = 0.5 * fabric.thickness;
+  const double closed = half - closed_approach(spec, scene.blank, fabric.compaction.curves().front());
   scene.tools = {
       {Role::punch, HemisphereShape{{0.0, 0.0, half}, spec.punch.radius}, Motion::driven, 0.0, 0.0},
-      {Role::die, RingShape{-half, spec.die.opening_radius, spec.die.fillet, true}, Motion::fixed, 0.0, 0.0},
-      {Role::binder, RingShape{half, spec.binder.inner_radius, spec.binder.edge_fillet, false},
+      {Role::die, RingShape{-closed, spec.die.opening_radius, spec.die.fillet, true}, Motion::fixed, 0.0,
+       0.0},
+      {Role::binder, RingShape{closed, spec.binder.inner_radius, spec.binder.edge_fillet, false},
        Motion::loaded, spec.process.binder_force, spec.binder.mass}};
   scene.blank_temperature = spec.process.blank_temperature;
   scene.tool_temperature = spec.process.tool_temperature;
@@ -42,43 +55,25 @@ Scene stamping_scene(const StampingSpec& spec, const mesoscale::FabricProperties
   return scene;
 }
 
-bool under_binder(const Scene& scene, int node) {
-  const auto& ring = std::get<RingShape>(scene.tools[binder].shape);
-  return scene.blank.reference[node].head<2>().norm() >= ring.opening_radius + ring.fillet;
-}
-
-// Equilibrium under the binder force before the punch moves: uniform pressure as a guess, then two long
-// frictionless steps, after which the velocities are set to rest.
+// Equilibrium under the binder force before the punch moves. Only the edges of the rings are off balance, so
+// residuals are small from the start and the tolerance must be as well.
 StepSummary close_binder(System& system, const SolveOptions& options, State& state) {
-  const Scene& scene = system.scene();
-  double area = 0.0;
-  for (int i = 0; i < scene.blank.nodes(); ++i)
-    if (under_binder(scene, i)) area += scene.blank.node_area[i];
-  const double approach = approach_at(system.compaction(), scene.tools[binder].force / area);
-  for (int i = 0; i < scene.blank.nodes(); ++i)
-    if (under_binder(scene, i)) state.x[3 * i + 2] -= approach;
-  state.x[3 * scene.blank.nodes()] = -2.0 * approach;
-
   SolveOptions closing = options;
   closing.frictionless = true;
-  StepSummary summary;
-  for (int k = 0; k < 2; ++k) {
-    State end;
-    StepData step;
-    state.v.setZero();
-    summary = advance(system, state, 1.0, state.tool_z, {}, closing, end, step);
-    if (!summary.converged) return summary;
-    state = end;
-  }
+  closing.force_tolerance = 1e-6;
+  closing.relative_tolerance = 1e-6;
+  State end;
+  StepData step;
+  const StepSummary summary = advance(system, state, 1.0, state.tool_z, {}, closing, end, step);
+  if (!summary.converged) return summary;
+  state = std::move(end);
   state.v.setZero();
   state.time = 0.0;
   return summary;
 }
 
-void add_to_history(HistoryRow& row, const StepAccount& account, const StepSummary& summary) {
+void add_to_history(HistoryRow& row, const StepAccount& account) {
   const StepLedger& l = account.ledger;
-  row.newton_iterations += summary.newton_iterations;
-  row.lag_iterations += summary.lag_iterations;
   row.work_punch += l.work_driven;
   row.work_binder += l.work_loaded;
   row.energy_tow += l.tow;
@@ -115,7 +110,7 @@ void finish_row(HistoryRow& row, const BlankState& blank, const State& state, co
 // Parts of one step: no more tool motion at once than contact can follow (design: solver 3).
 int parts_of_step(const StampingSpec& spec, double thickness, double spacing) {
   const double limit = std::min({0.5 * spec.die.fillet, thickness, 1.25 * spacing});
-  return static_cast<int>(std::ceil(spec.process.stroke / spec.process.steps / limit - 1e-9));
+  return std::max(1, static_cast<int>(std::ceil(spec.process.stroke / spec.process.steps / limit - 1e-9)));
 }
 
 class Run {
@@ -127,9 +122,21 @@ class Run {
         scene_(stamping_scene(spec, fabric, friction)),
         system_(scene_),
         state_(initial_state(scene_)) {}
+  Run(const Run&) = delete;  // the system points at the scene
+  Run& operator=(const Run&) = delete;
 
+  // A value that is not finite ends the run like any other failure: what was reached is kept.
   StampingResult result() {
     describe();
+    try {
+      return drive();
+    } catch (const NumericalError& error) {
+      return fail(error.what());
+    }
+  }
+
+ private:
+  StampingResult drive() {
     const StepSummary closed = close_binder(system_, options_, state_);
     if (!closed.converged) return fail("closing the binder: " + closed.reason);
     const BlankState blank = blank_state(system_, state_, nullptr);
@@ -143,24 +150,21 @@ class Run {
     return finish();
   }
 
- private:
   void describe() {
     result_.summary.nodes = scene_.blank.nodes();
     result_.summary.spacing = scene_.blank.spacing;
   }
 
-  // One nominal step, in equal parts of time; a part that fails is halved, and the rest goes on with the
+  // One nominal step, in equal parts of stroke; a part that fails is halved, and the rest goes on with the
   // halves.
   bool advance_to(int step, int parts) {
     row_.newton_iterations = row_.lag_iterations = 0;
     row_.force_balance = 0.0;
-    const double from = state_.time,
-                 to = time_at_stroke(spec_.process, spec_.process.stroke * step / spec_.process.steps);
+    const double stroke = spec_.process.stroke / spec_.process.steps;
     long pieces = parts, done = 0;
     while (done < pieces) {
-      const double next = done + 1 == pieces ? to
-                                             : from + (to - from) * static_cast<double>(done + 1) /
-                                                          static_cast<double>(pieces);
+      const double share = static_cast<double>(done + 1) / static_cast<double>(pieces);
+      const double next = time_at_stroke(spec_.process, stroke * (step - 1 + share));
       if (advance_part(next - state_.time, next)) {
         ++done;
         continue;
@@ -168,17 +172,22 @@ class Run {
       ++result_.summary.rejected_steps;
       pieces *= 2;
       done *= 2;
-      if ((to - from) / static_cast<double>(pieces) < 1e-7) {
+      if (next - state_.time < 2e-7) {
         reason_ = fmt::format("step {} of {} (punch at {:.2f} mm): {}; the time step fell below 1e-7 s", step,
                               spec_.process.steps, -1e3 * state_.tool_z[punch], reason_);
         return false;
       }
     }
-    const BlankState blank = blank_state(system_, state_, &last_step_);
-    finish_row(row_, blank, state_, scene_);
-    result_.history.push_back(row_);
+    const BlankState blank = close_row();
     if (observe_) observe_(step, spec_.process.steps, row_, blank);
     return true;
+  }
+
+  BlankState close_row() {
+    BlankState blank = blank_state(system_, state_, &last_step_);
+    finish_row(row_, blank, state_, scene_);
+    result_.history.push_back(row_);
+    return blank;
   }
 
   bool advance_part(double dt, double time) {
@@ -188,11 +197,13 @@ class Run {
     StepData step;
     const StepSummary summary = advance(system_, state_, dt, tool_z, {}, options_, end, step);
     result_.summary.newton_iterations += summary.newton_iterations;
+    row_.newton_iterations += summary.newton_iterations;
+    row_.lag_iterations += summary.lag_iterations;
     if (!summary.converged) {
       reason_ = summary.reason;
       return false;
     }
-    add_to_history(row_, account(system_, step, end), summary);
+    add_to_history(row_, account(system_, step, end));
     result_.summary.falling_branch |= on_falling_branch(system_, step, end);
     peak_force_balance_ = std::max(peak_force_balance_, row_.force_balance);
     end.time = time;
@@ -205,6 +216,9 @@ class Run {
 
   StampingResult fail(const std::string& why) {
     result_.summary.failure = why;
+    // Parts of a step that were accepted before its rest failed belong to the history.
+    const double recorded = result_.history.empty() ? 0.0 : result_.history.back().time;
+    if (state_.time > recorded) close_row();
     return finish();
   }
 

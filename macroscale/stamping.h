@@ -128,9 +128,9 @@ using StampingObserver = std::function<void(int step, int steps, const HistoryRo
 
 Problems check(const StampingSpec& spec);
 
-/// Closes the binder, then drives the punch. Not finishing is a result (`summary.failure` says why).
+/// Closes the binder, then drives the punch. Not finishing is a result (`summary.failure` says why), and so
+/// is a quantity that is not finite: history and state up to there are kept.
 /// @throws InputError      if check(spec) or check(fabric) finds something
-/// @throws NumericalError  if a quantity is not finite; names node, step and quantity
 StampingResult run_stamping(const StampingSpec& spec, const mesoscale::FabricProperties& fabric,
                             const friction::Model& friction, const StampingObserver& observe = {});
 

@@ -447,4 +447,12 @@ void System::write_matrix(double shift) {
   for (int b = 0; b < bodies; ++b) values[start[3 * nodes + b]] = body_diagonal_[b] + shift;
 }
 
+double System::largest_diagonal() const {
+  const auto& pattern = solver_->pattern();
+  const auto values = solver_->values();
+  double largest = 0.0;
+  for (int j = 0; j < pattern.size; ++j) largest = std::max(largest, values[pattern.column_start[j]]);
+  return largest;
+}
+
 }  // namespace heddle::macroscale

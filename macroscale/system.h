@@ -38,6 +38,7 @@ struct PotentialTerms {
 class System {
  public:
   explicit System(const Scene& scene);
+  explicit System(Scene&&) = delete;  // the scene must outlive the system
 
   const Scene& scene() const { return scene_; }
   int size() const { return size_; }
@@ -53,6 +54,8 @@ class System {
   /// Fills the solver's matrix with d2E/dx2 (held unknowns: identity) plus `shift` on the diagonal.
   void assemble(const StepData& step, const Eigen::VectorXd& x, Filter filter, double shift = 0.0);
   SparseSolver& solver() { return *solver_; }
+  /// Largest diagonal entry of the last assembled matrix [N/m].
+  double largest_diagonal() const;
 
   /// Position of tool k at the end of the step: its own unknown if it is loaded.
   double tool_position(const StepData& step, const Eigen::VectorXd& x, int k) const;

@@ -96,7 +96,7 @@ void check_forming(Problems& problems, const FormingSpec& f) {
       {"forming.tow_friction", f.tow_friction, "", 1.0, within(0.0, f.tow_friction, 2.0),
        "must lie between 0 and 2", "The default is 0.2."},
       {"forming.reference_tension", f.reference_tension, "N/m", 1.0, above_to(0.0, f.reference_tension, 1e5),
-       "must satisfy 0 < reference_tension <= 100000 N/m", "The default is 200 N/m."},
+       "must satisfy 0 < reference_tension <= 100000 N/m", "The default is 800 N/m."},
       {"forming.in_tow_shear_share", f.in_tow_shear_share, "", 1.0, within(0.0, f.in_tow_shear_share, 1.0),
        "must lie between 0 and 1", "0: tows turn rigidly; 1: all shear is inside the tows."},
       {"forming.bonding", f.bonding, "", 1.0, within(0.0, f.bonding, 1.0), "must lie between 0 and 1",
@@ -106,6 +106,24 @@ void check_forming(Problems& problems, const FormingSpec& f) {
        "The default is 0.01; 0 would leave slack tows without stiffness."},
   };
   for (const Bound& bound : bounds) add_if_broken(problems, bound);
+}
+
+// Beyond these the crowns of neighbouring tows and the crossings no longer make a cloth, and the contact
+// tables end.
+void check_proportions(Problems& problems, const WeaveSpec& w) {
+  const double slenderness = w.tow_width / w.tow_thickness;
+  if (slenderness < 2.0 || slenderness > 40.0)
+    problems.push_back({"weave.tow_width.proportion", "weave.tow_width",
+                        fmt::format("{:.6g} mm", 1e3 * w.tow_width),
+                        fmt::format("must be 2 to 40 times the tow thickness ({:.6g} mm); it is {:.3g} times",
+                                    1e3 * w.tow_thickness, slenderness),
+                        "Table 1 gives 4.64 mm and 0.75 mm."});
+  if (w.gap > w.tow_width)
+    problems.push_back(
+        {"weave.gap.proportion", "weave.gap", fmt::format("{:.6g} mm", 1e3 * w.gap),
+         fmt::format("must not exceed the tow width ({:.6g} mm): wider apart the tows do not make a cloth",
+                     1e3 * w.tow_width),
+         "Table 1 gives 0.75 mm."});
 }
 
 void check_thickness(Problems& problems, const WeaveSpec& w) {
@@ -153,6 +171,7 @@ Problems check(const CellSpec& spec) {
     problems.push_back({"weave.pattern.unknown", "weave.pattern", spec.weave.pattern, fault,
                         "Write plain, twill 2/2 or satin 8/3."});
   check_weave_ranges(problems, spec.weave);
+  if (problems.empty()) check_proportions(problems, spec.weave);
   if (!positive(spec.weave.fabric_thickness) || problems.empty()) check_thickness(problems, spec.weave);
   // Packing needs a geometry, and so sound numbers.
   if (problems.empty()) check_packing(problems, spec);

@@ -41,7 +41,7 @@ struct FormingSpec {
   double compaction_modulus = 3.2e6;  ///< k E of sigma = k E (V^n - V0^n) [Pa]
   double compaction_exponent = 5.0;   ///< n [-]; 3 random, 5 planar, larger for bundles (Toll)
   double tow_friction = 0.2;          ///< mu_t between crossing tows (lubricated) [-]
-  double reference_tension = 200.0;   ///< tow tension per width at which the shear energy is taken [N/m]
+  double reference_tension = 800.0;   ///< tow tension per width at which the shear energy is taken [N/m]
   double in_tow_shear_share = 0.5;    ///< s_in: 0 = tows turn rigidly, 1 = they shear inside [-]
   double bonding = 0.3;               ///< chi: 0 = fibres slide freely in bending, 1 = bonded [-]
   double compression_ratio = 0.01;    ///< tangent in compression over tangent in tension [-]

@@ -39,7 +39,7 @@ struct ShearModel {
   FabricGeometry fabric;
   CompactionLaw law;
   TensionModel tension;                    ///< of the unsheared fabric: rest length, tow stiffness, bending
-  double reference_tension = 200.0;        ///< n_ref [N/m]
+  double reference_tension = 800.0;        ///< n_ref [N/m]
   double tow_friction = 0.2;               ///< mu_t [-]
   double ramp_angle = 0.0174532925199433;  ///< g_0 [rad], one degree: prior
 

@@ -9,7 +9,6 @@
 #include <tbb/global_control.h>
 
 #include "core/progress.h"
-#include "core/sparse_solver.h"
 #include "pipeline/case.h"
 #include "pipeline/export_vtu.h"
 #include "pipeline/report.h"
@@ -31,7 +30,6 @@ struct Findings {
   std::optional<WeavePictures> pictures;
   std::optional<FrictionStage> friction;
   std::optional<macroscale::StampingResult> stamping;
-  std::vector<std::string> warnings;
 };
 
 fs::path output_folder(const RunOptions& options, const Case& a_case) {
@@ -81,14 +79,16 @@ void run_friction(const Case& a_case, RunFolder& folder, Findings& findings) {
   for (const std::string& note : findings.friction->notes) folder.log("friction: " + note);
 }
 
-// Writes frames of the blank as the run goes, so that a run that fails has left its history.
+// Writes frames of the blank and the history as the run goes: what ends it, they are there.
 class BlankSeries {
  public:
   BlankSeries(const RunFolder& folder, int steps)
       : folder_(folder), every_(std::max(1, steps / frames)), steps_(steps) {}
 
-  void add(int step, const macroscale::BlankState& blank) {
+  void add(int step, const macroscale::HistoryRow& row, const macroscale::BlankState& blank) {
+    if (step > 0) history_.push_back(row);
     if (step % every_ != 0 && step != steps_) return;
+    folder_.write("macroscale/history.csv", history_csv(history_));
     const std::string name = fmt::format("blank_{:04d}.vtu", step);
     folder_.write("macroscale/" + name, vtu(mesh_of(blank)));
     series_.push_back({blank.time, name});
@@ -99,6 +99,7 @@ class BlankSeries {
   const RunFolder& folder_;
   int every_, steps_;
   std::vector<SeriesFrame> series_;
+  std::vector<macroscale::HistoryRow> history_;
 };
 
 void run_stamping(const Case& a_case, RunFolder& folder, Findings& findings, bool quiet) {
@@ -108,7 +109,7 @@ void run_stamping(const Case& a_case, RunFolder& folder, Findings& findings, boo
   BlankSeries series(folder, steps);
   const auto observe = [&](int step, int, const macroscale::HistoryRow& row,
                            const macroscale::BlankState& blank) {
-    series.add(step, blank);
+    series.add(step, row, blank);
     const std::string note =
         fmt::format("punch {:.1f} mm, {:.0f} N", 1e3 * row.punch_displacement, row.punch_force);
     progress.update(step, note);
@@ -188,7 +189,6 @@ ReportInput report_input(const Case& a_case, const Findings& findings) {
     input.blank = findings.stamping->final_state;
     input.artefact = a_case.stamping->artefact;
   }
-  input.warnings = findings.warnings;
   input.notes.insert(input.notes.end(), a_case.notes.begin(), a_case.notes.end());
   return input;
 }
@@ -251,6 +251,22 @@ void print_stamping(const macroscale::StampingSummary& s) {
              s.steps, s.rejected_steps, s.newton_iterations, s.nodes);
 }
 
+// What the report says that a reader of the terminal must not miss.
+void print_attention(const ReportInput& input) {
+  for (const Verdict& verdict : verdicts(input))
+    if (verdict.tone == Tone::attention || verdict.tone == Tone::fails)
+      fmt::print("attention            {}\n", verdict.text);
+}
+
+// Advice that fits where it stopped.
+std::string advice_for(const macroscale::StampingSummary& summary, int steps) {
+  if (summary.steps == 0)
+    return "The binder did not close or the first step failed: check binder_force, the tools and the blank's "
+           "spacing.";
+  return fmt::format("Try smaller steps (--set process.steps={}), or look at the last state for a fold.",
+                     2 * steps);
+}
+
 enum class Part { all, weave, friction };
 
 Case read_part(const RunOptions& options, Part part) {
@@ -273,10 +289,6 @@ int run_part(const RunOptions& options, Part part) {
   const auto threads = limit_threads(options.threads);
   RunFolder folder(a_case, output_folder(options, a_case), options.force);
   Findings findings;
-  if (const std::string warning = blas_report().warning; !warning.empty()) {
-    findings.warnings.push_back(warning);
-    std::cerr << "heddle: " << warning << '\n';
-  }
   for (const std::string& note : a_case.notes) folder.log("note: " + note);
   run_cell(a_case, folder, findings);
   run_friction(a_case, folder, findings);
@@ -286,13 +298,14 @@ int run_part(const RunOptions& options, Part part) {
   if (findings.cell && part != Part::friction) print_cell(findings.cell->summary);
   if (findings.friction && !findings.stamping) print_friction(*findings.friction);
   if (findings.stamping) print_stamping(findings.stamping->summary);
+  print_attention(report_input(a_case, findings));
   fmt::print("results              {}\n", folder.path().string());
   if (!findings.stamping || findings.stamping->summary.completed) return exit_done;
   std::cerr << fmt::format(
       "heddle: stamping stopped: {}\n  {} holds the history, the last state (macroscale/blank_last.vtu) and "
-      "the report so far.\n"
-      "  Try smaller steps (--set process.steps={}), or look where the blank folds.\n",
-      findings.stamping->summary.failure, folder.path().string(), 2 * a_case.stamping->process.steps);
+      "the report so far.\n  {}\n",
+      findings.stamping->summary.failure, folder.path().string(),
+      advice_for(findings.stamping->summary, a_case.stamping->process.steps));
   return exit_failed;
 }
 

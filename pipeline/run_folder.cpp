@@ -30,6 +30,10 @@ void demand_own_folder(const Case& a_case, const fs::path& folder) {
                        "must be a folder, but a file has this name", "Choose another folder with -o."}});
   if (!fs::exists(folder) || fs::is_empty(folder)) return;
   const std::string held = case_in(folder);
+  if (held == a_case.name && !a_case.stamping && fs::exists(folder / "macroscale"))
+    throw InputError({{"output.folder.stamped", "-o", folder.string(),
+                       "holds a stamped part, which this command would replace",
+                       "Choose another folder with -o, or write over it with --force."}});
   if (held == a_case.name) return;
   throw InputError({{"output.folder.other", "-o", folder.string(),
                      held.empty() ? "holds files that are not a run of heddle"
@@ -61,7 +65,15 @@ std::string processor_name() {
 
 RunFolder::RunFolder(const Case& a_case, fs::path folder, bool force) : path_(std::move(folder)) {
   if (!force) demand_own_folder(a_case, path_);
-  fs::create_directories(path_);
+  try {
+    fs::create_directories(path_);
+  } catch (const fs::filesystem_error& error) {
+    throw InputError({{"output.folder.create", "-o", path_.string(),
+                       "cannot be created: " + error.code().message(), "Choose another folder with -o."}});
+  }
+  for (const char* name : {"mesoscale", "friction", "macroscale", "inputs", "summary.json", "report.html",
+                           "manifest.json", "log.txt"})
+    fs::remove_all(path_ / name);
   write_resolved(a_case, path_);
 }
 
@@ -82,7 +94,7 @@ void RunFolder::close(const Case& a_case) const {
   manifest.versions = {{"heddle", HEDDLE_VERSION}, {"compiler", __VERSION__}};
   manifest.machine = {{"processor", processor_name()},
                       {"cores", fmt::format("{}", std::thread::hardware_concurrency())},
-                      {"blas", blas_report().name}};
+                      {"blas", blas_name()}};
   manifest.stages = stages_;
   write("manifest.json", manifest_json(manifest));
   write("log.txt", log_);

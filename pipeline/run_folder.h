@@ -13,8 +13,11 @@ namespace heddle::pipeline {
 /// The folder of one run: where its files go, what its log says, what each stage cost.
 class RunFolder {
  public:
-  /// Creates the folder and writes resolved.yaml.
-  /// @throws InputError  if it holds another case, or files that are not a run's, and `force` is not set
+  /// Creates the folder, removes what an earlier run of the case left, writes resolved.yaml: old results
+  /// never stand beside new inputs.
+  /// @throws InputError  if it holds another case, files that are not a run's, or a stamped part that a run
+  /// without
+  ///                     stamping would replace, and `force` is not set; if it cannot be created
   RunFolder(const Case& a_case, std::filesystem::path folder, bool force);
 
   const std::filesystem::path& path() const { return path_; }

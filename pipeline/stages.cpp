@@ -184,8 +184,8 @@ WeavePictures weave_pictures(const mesoscale::CellSpec& spec) {
 }
 
 double mean_binder_pressure(const macroscale::StampingSpec& spec) {
-  const double area = spec.blank.size[0] * spec.blank.size[1] -
-                      std::numbers::pi * spec.binder.inner_radius * spec.binder.inner_radius;
+  const double flat = spec.binder.inner_radius + spec.binder.edge_fillet;
+  const double area = spec.blank.size[0] * spec.blank.size[1] - std::numbers::pi * flat * flat;
   return spec.process.binder_force / area;
 }
 

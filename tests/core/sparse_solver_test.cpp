@@ -53,5 +53,5 @@ TEST_CASE("a matrix that is not positive definite is an answer, and the solver w
 }
 
 TEST_CASE("the BLAS behind the solver is OpenBLAS", "[core][solver]") {
-  CHECK(heddle::blas_report().warning.empty());
+  CHECK_THAT(heddle::blas_name(), Catch::StartsWith("OpenBLAS"));
 }

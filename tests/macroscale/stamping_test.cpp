@@ -122,9 +122,13 @@ TEST_CASE("a stamping that cannot work is refused with every reason at once", "[
   spec.blank.size = {0.15, 0.15};
   spec.process.steps = 0;
   spec.die.opening_radius = 0.06;
+  spec.blank.orientation = 0.5;
+  spec.blank.spacing = 1e-5;
+  spec.process.stroke = 0.9;
   const auto problems = check(spec);
   REQUIRE(problems.size() >= 3);
-  for (const char* id : {"blank.size.reach", "process.steps.range", "tools.die.opening_radius.clearance"})
+  for (const char* id : {"blank.size.reach", "process.steps.range", "tools.die.opening_radius.clearance",
+                         "blank.orientation.range", "blank.spacing.nodes", "process.punch.stroke.reach"})
     CHECK(std::any_of(problems.begin(), problems.end(), [&](const auto& p) { return p.id == id; }));
   CHECK(check(StampingSpec{}).empty());
   CHECK_THROWS_AS(run_stamping(spec, make_fabric({}), coulomb()), heddle::InputError);

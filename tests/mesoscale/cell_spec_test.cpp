@@ -49,6 +49,8 @@ const std::vector<Wrong>& wrong_specs() {
       {"forming.compaction_modulus.range", [](CellSpec& s) { s.forming.compaction_modulus = 0.0; }},
       {"forming.compaction_exponent.range", [](CellSpec& s) { s.forming.compaction_exponent = 1.0; }},
       {"forming.tow_friction.range", [](CellSpec& s) { s.forming.tow_friction = -0.1; }},
+      {"weave.tow_width.proportion", [](CellSpec& s) { s.weave.tow_width = 90e-3; }},
+      {"weave.gap.proportion", [](CellSpec& s) { s.weave.gap = 20e-3; }},
       {"forming.reference_tension.range", [](CellSpec& s) { s.forming.reference_tension = 0.0; }},
       {"forming.in_tow_shear_share.range", [](CellSpec& s) { s.forming.in_tow_shear_share = 1.2; }},
       {"forming.bonding.range", [](CellSpec& s) { s.forming.bonding = -0.5; }},
