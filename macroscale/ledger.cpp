@@ -121,10 +121,8 @@ StepAccount account(const System& system, const StepData& step, const State& end
     for (int i = 0; i < blank.nodes(); ++i) {
       const double area = blank.node_area[i];
       const Vector3d step_of_node = end.node(i) - start.node(i) - Vector3d(0, 0, tool_motion);
-      const Distance d0 = distance(scene.tools[k].shape, start.node(i) - Vector3d(0, 0, start.tool_z[k]));
-      const Distance d = distance(scene.tools[k].shape, end.node(i) - Vector3d(0, 0, end.tool_z[k]));
-      const NormalContact c0 = normal_contact(system.compaction(), d0.distance, system.half_thickness());
-      const NormalContact c = normal_contact(system.compaction(), d.distance, system.half_thickness());
+      const NormalContact c0 = system.contact_at(start.node(i), k, start.tool_z[k]).normal;
+      const auto [d, c] = system.contact_at(end.node(i), k, end.tool_z[k]);
       Vector3d gradient = -area * c.pressure * d.normal;
       compaction.stored += area * (c.energy - c0.energy);
       compaction.work += gradient.dot(step_of_node);

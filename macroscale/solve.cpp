@@ -43,8 +43,7 @@ FrictionPoints freeze(const System& system, const StepData& step, const VectorXd
   if (step.frictionless || !scene.friction) return points;
   for (int k = 0; k < static_cast<int>(scene.tools.size()); ++k)
     tbb::parallel_for(0, nodes, [&, k](int i) {
-      const Distance d = system.tool_distance(step, x, k, i);
-      const NormalContact contact = normal_contact(system.compaction(), d.distance, system.half_thickness());
+      const auto [d, contact] = system.tool_contact(step, x, k, i);
       FrictionPoint& point = points[k][i];
       point.memory = step.start->memory[k][i];
       if (contact.pressure <= 0.0) return;
@@ -82,8 +81,7 @@ double mean_contact_force(const System& system, const StepData& step, const Vect
   int touching = 0;
   for (int k = 0; k < static_cast<int>(scene.tools.size()); ++k)
     for (int i = 0; i < scene.blank.nodes(); ++i) {
-      const double gap = system.tool_distance(step, x, k, i).distance;
-      const double p = normal_contact(system.compaction(), gap, system.half_thickness()).pressure;
+      const double p = system.tool_contact(step, x, k, i).normal.pressure;
       if (p <= 0.0) continue;
       sum += p * scene.blank.node_area[i];
       ++touching;
@@ -269,7 +267,7 @@ std::string fault_of(const System& system, const StepData& step, const State& en
   }
   for (int k = 0; k < static_cast<int>(scene.tools.size()); ++k)
     for (int i = 0; i < scene.blank.nodes(); ++i) {
-      const double approach = system.half_thickness() - system.tool_distance(step, end.x, k, i).distance;
+      const double approach = system.tool_contact(step, end.x, k, i).normal.approach;
       if (approach > system.compaction().x().back())
         return fmt::format(
             "node {} is pressed {:.3f} mm into tool {}, beyond the compaction table ({:.3f} mm)", i,

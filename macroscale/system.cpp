@@ -83,8 +83,15 @@ double System::tool_position(const StepData& step, const VectorXd& x, int k) con
   return body_[k] >= 0 ? x[body_[k]] : step.tool_z[k];
 }
 
-Distance System::tool_distance(const StepData& step, const VectorXd& x, int k, int i) const {
-  return distance(scene_.tools[k].shape, node_of(x, i) - Vector3d(0, 0, tool_position(step, x, k)));
+ToolContact System::contact_at(const Vector3d& x, int k, double z) const {
+  ToolContact contact;
+  contact.surface = distance(scene_.tools[k].shape, x - Vector3d(0, 0, z));
+  contact.normal = normal_contact(compaction_, contact.surface.distance, 0.5 * scene_.fabric->thickness);
+  return contact;
+}
+
+ToolContact System::tool_contact(const StepData& step, const VectorXd& x, int k, int i) const {
+  return contact_at(node_of(x, i), k, tool_position(step, x, k));
 }
 
 Vector3d System::relative_velocity(const StepData& step, const VectorXd& x, int k, int i) const {
@@ -156,10 +163,8 @@ PotentialTerms System::potential(const StepData& step, const VectorXd& x) const 
 
   const int tools = static_cast<int>(scene_.tools.size());
   for (int k = 0; k < tools; ++k) {
-    e.compaction += ordered_sum(blank.nodes(), [&](int i) {
-      return blank.node_area[i] *
-             normal_contact(compaction_, tool_distance(step, x, k, i).distance, half_thickness()).energy;
-    });
+    e.compaction += ordered_sum(
+        blank.nodes(), [&](int i) { return blank.node_area[i] * tool_contact(step, x, k, i).normal.energy; });
     if (body_[k] >= 0) e.loads += scene_.tools[k].force * x[body_[k]];
   }
   for (std::size_t k = 0; k < scene_.load.size(); ++k)
@@ -231,8 +236,7 @@ VectorXd System::full_gradient(const StepData& step, const VectorXd& x) const {
   std::vector<double> vertical(blank.nodes());
   for (int k = 0; k < static_cast<int>(scene_.tools.size()); ++k) {
     for_each(blank.nodes(), [&](int i) {
-      const Distance d = tool_distance(step, x, k, i);
-      const NormalContact contact = normal_contact(compaction_, d.distance, half_thickness());
+      const auto [d, contact] = tool_contact(step, x, k, i);
       Vector3d force = -blank.node_area[i] * contact.pressure * d.normal;
       if (rubs && step.friction[k][i].load > 0.0)
         force += friction_force(settings, step.friction[k][i], relative_velocity(step, x, k, i));
@@ -386,8 +390,7 @@ void System::add_contact(const StepData& step, const VectorXd& x, Filter filter)
     const bool loaded = body_[k] >= 0;
     std::vector<double>* row = loaded ? &body_row_[body] : nullptr;
     for_each(blank.nodes(), [&](int i) {
-      const Distance d = tool_distance(step, x, k, i);
-      const NormalContact contact = normal_contact(compaction_, d.distance, half_thickness());
+      const auto [d, contact] = tool_contact(step, x, k, i);
       Matrix3d stiffness = blank.node_area[i] * contact.stiffness * d.normal * d.normal.transpose();
       // Pressing against a convex tool, the node would rather slide off: negative, so dropped when filtering.
       if (filter == Filter::none) stiffness -= blank.node_area[i] * contact.pressure * d.curvature;

@@ -24,6 +24,12 @@ struct StepData {
   std::vector<std::vector<FrictionPoint>> friction;
 };
 
+/// One node against one tool.
+struct ToolContact {
+  Distance surface;
+  NormalContact normal;
+};
+
 /// Energies of the incremental potential at one position [J]; friction only as a difference (see below).
 struct PotentialTerms {
   double inertia = 0.0, tow = 0.0, shear = 0.0, rate = 0.0, bending = 0.0, twist = 0.0, compaction = 0.0;
@@ -59,15 +65,16 @@ class System {
 
   /// Position of tool k at the end of the step: its own unknown if it is loaded.
   double tool_position(const StepData& step, const Eigen::VectorXd& x, int k) const;
-  /// Distance from tool k of node i at x.
-  Distance tool_distance(const StepData& step, const Eigen::VectorXd& x, int k, int i) const;
+  /// Where node i at x stands against tool k, and how hard they press.
+  ToolContact tool_contact(const StepData& step, const Eigen::VectorXd& x, int k, int i) const;
   /// Velocity of node i against tool k over the step [m/s].
   Eigen::Vector3d relative_velocity(const StepData& step, const Eigen::VectorXd& x, int k, int i) const;
   /// Corner law of this step (time step and rate term included).
   CornerLaw corner_law(const StepData& step) const;
 
   const Curve& compaction() const { return compaction_; }
-  double half_thickness() const { return 0.5 * scene_.fabric->thickness; }
+  /// The same for a node at x against tool k displaced by z.
+  ToolContact contact_at(const Eigen::Vector3d& x, int k, double z) const;
   double mass(int unknown) const { return mass_[unknown]; }
   FrictionSettings friction_settings() const { return {scene_.friction, scene_.slip_smoothing}; }
   /// Energies and forces of the constant (quadratic) terms.

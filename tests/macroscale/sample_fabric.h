@@ -17,6 +17,7 @@ struct SampleFabric {
   double rate_consistency = 0.0;   ///< [N s^n/m]
   double bending = 1e-3;           ///< [N m]
   double contact_stiffness = 5e8;  ///< [Pa/m], p = k d^2 / (d + toe)
+  double table_end = 5e-4;         ///< largest approach of one face in the compaction table [m]
   double toe = 2e-5;               ///< [m]
 };
 
@@ -41,7 +42,7 @@ inline mesoscale::FabricProperties make_fabric(const SampleFabric& sample) {
   for (Curve& b : fabric.bending) b = Curve({300.0, 500.0}, {sample.bending, sample.bending});
   std::vector<double> d, p;
   for (int k = 0; k <= 200; ++k) {
-    d.push_back(2.5e-6 * k);
+    d.push_back(sample.table_end * k / 200.0);
     p.push_back(sample.contact_stiffness * d.back() * d.back() / (d.back() + sample.toe));
   }
   fabric.compaction = CurveFamily({0.0}, {Curve(d, p)});

@@ -57,6 +57,43 @@ TEST_CASE(
   }
 }
 
+TEST_CASE("before the punch moves the blank lies flat, slack and where it was", "[macroscale][stamping]") {
+  StampingSpec spec = small_case();
+  spec.process.steps = 1;
+  spec.process.stroke = 1e-4;
+  HistoryRow first;
+  BlankState blank;
+  run_stamping(spec, make_fabric({}), coulomb(),
+               [&](int step, int, const HistoryRow& row, const BlankState& state) {
+                 if (step == 0) first = row, blank = state;
+               });
+  CHECK(std::abs(first.draw_in_max) < 1e-7);
+  CHECK(first.tow_strain_max < 1e-6);
+  for (const auto& x : blank.position) CHECK(std::abs(x[2]) < 5e-5);  // only the rings' edges bend it
+}
+
+TEST_CASE("with stabilisation on, its force and its work are in the books", "[macroscale][stamping]") {
+  StampingSpec spec = small_case();
+  spec.artefact.stabilisation = 2000.0;
+  const auto result = run(spec);
+  REQUIRE(result.summary.completed);
+  CHECK(result.history.back().dissipation_artefact > 0.01 * result.history.back().work_punch);
+  CHECK(result.summary.energy_residual_max < 0.01);
+  CHECK(result.summary.force_balance_residual_max < 1e-3);
+}
+
+TEST_CASE("a stamping that cannot go on keeps its history and says where it stopped",
+          "[macroscale][stamping]") {
+  const auto result = run_stamping(small_case(), make_fabric({.table_end = 5e-5}), coulomb());
+  const StampingSummary& s = result.summary;
+  CHECK_FALSE(s.completed);
+  CHECK_THAT(s.failure,
+             Catch::Contains("beyond the compaction table") && Catch::Contains("fell below 1e-7 s"));
+  CHECK(s.rejected_steps > 0);
+  REQUIRE_FALSE(result.history.empty());
+  CHECK(result.history.back().punch_displacement == Approx(result.final_state.punch_displacement));
+}
+
 TEST_CASE("work of the punch is the area under its force against stroke", "[macroscale][stamping]") {
   StampingSpec spec = small_case();
   spec.process.steps = 40;
