@@ -12,7 +12,7 @@ namespace heddle::macroscale {
 ///
 /// a, b are the edge vectors from the corner node along warp and weft, p, q their directions, gamma = asin(s)
 /// the trellis shear angle, R = m_s/(n+1) |gdot|^(n+1) the rate term with gdot = (gamma - gamma_n)/dt.
-/// Evaluating at the corners (not at the centre) leaves no hourglass mode. Design: solver 1.3.
+/// Evaluating at the corners (not at the centre) leaves no hourglass mode. See docs/theory/macroscale.md.
 struct CornerLaw {
   const mesoscale::FabricProperties* fabric = nullptr;
   double area = 0.0;              ///< A/4 [m^2]

@@ -107,7 +107,7 @@ void finish_row(HistoryRow& row, const BlankState& blank, const State& state, co
     row.tow_strain_max = std::max({row.tow_strain_max, strain[0], strain[1]});
 }
 
-// Parts of one step: no more tool motion at once than contact can follow (design: solver 3).
+// Parts of one step: no more tool motion at once than contact can follow.
 int parts_of_step(const StampingSpec& spec, double thickness, double spacing) {
   const double limit = std::min({0.5 * spec.die.fillet, thickness, 1.25 * spacing});
   return std::max(1, static_cast<int>(std::ceil(spec.process.stroke / spec.process.steps / limit - 1e-9)));

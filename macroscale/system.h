@@ -40,7 +40,7 @@ struct PotentialTerms {
 };
 
 /// The discrete incremental potential of one scene: value, gradient, Hessian, on a fixed pattern.
-///     E(x) = 1/2 |x - x_n - dt v_n|_M^2 / dt^2 + U(x) + dt R + D + F_b z_b      (design: solver 3)
+///     E(x) = 1/2 |x - x_n - dt v_n|_M^2 / dt^2 + U(x) + dt R + D + F_b z_b      (docs/theory/macroscale.md)
 class System {
  public:
   explicit System(const Scene& scene);

@@ -15,7 +15,7 @@ namespace heddle::mesoscale {
 ///     hundreds apart
 ///
 /// <z_c^2> is the mean over the tow's path, I/A that of its section. chi = forming.bonding is a prior.
-/// Source: design notes, mesoscale 3.4; the voxel cell gives 5.0e-2 N m for the bonded solid with resin.
+/// Source: docs/theory/mesoscale.md; the voxel cell gives 5.0e-2 N m for the bonded solid with resin.
 struct BendingStiffness {
   double sliding, bonded, value;
 };

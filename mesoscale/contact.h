@@ -13,8 +13,8 @@ namespace heddle::mesoscale {
 /// tow, v across it, both in [0, p/2]) the faces lie below the crown plane by
 ///     upper tow: D_a(u) + L(v), v <= w/2      lower tow: h - D_b(v) + L(u), u <= w/2
 /// with L the lens drop and D the path drop of a step that changes sides (0 where the tow floats). So for
-/// each u the touched v form intervals with closed-form ends, and only u is left to integrate. Source: design
-/// notes, mesoscale 4.
+/// each u the touched v form intervals with closed-form ends, and only u is left to integrate. See
+/// docs/theory/mesoscale.md.
 struct PlateContact {
   CrossingGeometry crossing;
   QuarterShares quarters;

@@ -13,7 +13,7 @@ namespace heddle::mesoscale {
 
 /// Rate-dependent part of the shear resistance, as one dissipation potential per initial area:
 ///     R = m_s(T) / (n + 1) |gdot|^(n+1)      [W/m^2]
-/// crossover film and in-tow flow together (design mesoscale 3.3, T_visc).
+/// crossover film and in-tow flow together (T_visc of docs/theory/mesoscale.md).
 struct ShearRate {
   double consistency = 0.0;               ///< m_s at the reference temperature [N s^n / m]
   double index = 1.0;                     ///< n [-]

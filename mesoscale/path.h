@@ -13,7 +13,7 @@ namespace heddle::mesoscale {
 /// vertical cuts: the local gap is the sum over x and y of lens drop minus path drop). When R' reaches R_jam
 /// = (p^2 + h^2) / (4 h) no straight part is left; from there the path is held on R_jam, which is still >= R
 /// as long as the tow is no wider than the pitch.
-/// Source: Peirce 1937, Hearle & Shanahan (lens form); design notes, mesoscale 1.3.
+/// Source: Peirce 1937, Hearle & Shanahan (lens form); docs/theory/mesoscale.md.
 struct ArcPath {
   double pitch;   ///< p [m]
   double height;  ///< h, crown to crown of the centreline [m], >= 0

@@ -9,7 +9,7 @@ namespace heddle::mesoscale {
 ///
 ///     R = (w^2 + t^2) / (4 t),   half height f(y) = sqrt(R^2 - y^2) - (R - t/2),   |y| <= w/2
 ///
-/// Source: lens form of Hearle & Shanahan; design notes, mesoscale 1.2.
+/// Source: lens form of Hearle & Shanahan; docs/theory/mesoscale.md.
 struct LensSection {
   double width;      ///< w [m]
   double thickness;  ///< t [m], 0 < t <= w

@@ -34,7 +34,7 @@ struct ShearFlow {
 ///
 /// V and a (arm of the pressure) come from the crossing under n_ref at that angle; the radius of the path is
 /// held at its unsheared value. The ramp is friction taken as elastic over the first degree: a potential has
-/// no jump at rest. Source: design notes, mesoscale 3.3 (power balance of the picture frame).
+/// no jump at rest. Source: docs/theory/mesoscale.md (power balance of the picture frame).
 struct ShearModel {
   FabricGeometry fabric;
   CompactionLaw law;

@@ -30,7 +30,7 @@ struct TowStretch {
 ///
 /// l_i(p (1 + e_i), h_i) is jointly convex, phi convex and non-decreasing, the rest convex in h; so F is
 /// jointly convex, and its minimum over h is convex in (e1, e2). The vertical balance N_i sin th_i = V/2 is
-/// dF/dh = 0. Source: Kawabata 1973, Hearle & Shanahan 1978 (energy form); design notes, mesoscale 3.2.
+/// dF/dh = 0. Source: Kawabata 1973, Hearle & Shanahan 1978 (energy form); docs/theory/mesoscale.md.
 struct TensionModel {
   double pitch = 0.0;        ///< p [m]
   double rest_height = 0.0;  ///< h0 = tow thickness: crowns of crossing tows just touch [m]
