@@ -24,8 +24,8 @@ struct SparseSolver::Implementation {
     // One thread a factorisation: a second BLAS thread gains nothing below 50 k nodes and costs
     // reproducibility.
     openblas_set_num_threads(1);
-    // CHOLMOD asks for four OpenMP threads in loops too short for them; their spinning costs a third of a
-    // factorisation on two cores that TBB already uses. No active level = they run in the calling thread.
+    // CHOLMOD asks for four OpenMP threads in short loops, which then spin beside TBB's on two cores
+    // (docs/decisions/openmp-off.md). No active level = they run in the calling thread.
     omp_set_max_active_levels(0);
     cholmod_start(&common);
     common.supernodal = CHOLMOD_SUPERNODAL;
