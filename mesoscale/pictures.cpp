@@ -113,6 +113,34 @@ double volume(const TriMesh& mesh) {
   return sum;
 }
 
+VoxelLabels tow_labels(const UnitCell& cell, int per_pitch, int through) {
+  VoxelLabels voxels;
+  const int warps = cell.weave.warps;
+  const double thickness = 2.0 * half_height(cell.section, 0.0) + cell.crimp_height();
+  voxels.count = {per_pitch * cell.weave.wefts, per_pitch * warps, through};
+  voxels.spacing = {cell.pitch / per_pitch, cell.pitch / per_pitch, thickness / through};
+  voxels.origin = {0.0, 0.0, -0.5 * thickness};
+  const auto [nx, ny, nz] = voxels.count;
+  voxels.labels.assign(static_cast<std::size_t>(nx) * ny * nz, 0);
+  const auto fill = [&](int i, int j, double bottom, double top, int label) {
+    for (int k = 0; k < nz; ++k) {
+      const double z = voxels.origin[2] + (k + 0.5) * voxels.spacing[2];
+      if (bottom <= z && z <= top)
+        voxels.labels[(static_cast<std::size_t>(k) * ny + j) * nx + i] = static_cast<std::uint16_t>(label);
+    }
+  };
+  for (int j = 0; j < ny; ++j)
+    for (int i = 0; i < nx; ++i) {
+      const double xi = (i + 0.5) * voxels.spacing[0], eta = (j + 0.5) * voxels.spacing[1];
+      const Column c = column(cell, xi, eta);
+      const int warp = static_cast<int>(std::lround(eta / cell.pitch)) % warps;
+      const int weft = static_cast<int>(std::lround(xi / cell.pitch)) % cell.weave.wefts;
+      if (c.warp) fill(i, j, c.warp_bottom, c.warp_top, 1 + warp);
+      if (c.weft) fill(i, j, c.weft_bottom, c.weft_top, 1 + warps + weft);
+    }
+  return voxels;
+}
+
 TriMesh tow_surfaces(const UnitCell& cell, int along, int across) {
   TriMesh mesh;
   for (int i = 0; i < cell.weave.warps; ++i)

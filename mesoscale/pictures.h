@@ -1,6 +1,7 @@
 #pragma once
 
 #include <array>
+#include <cstdint>
 #include <vector>
 
 #include "mesoscale/cell.h"
@@ -21,6 +22,20 @@ double volume(const TriMesh& mesh);
 /// @param along   stations per pitch
 /// @param across  strips over the tow width
 TriMesh tow_surfaces(const UnitCell& cell, int along = 24, int across = 16);
+
+/// Which tow fills each voxel of one repeat, sampled at the voxel's middle: 0 = none (resin or air), 1 to
+/// `warps` the warps, then the wefts. x fastest. Lengths in the parameter plane, which is the fabric's own
+/// plane where it is not sheared.
+struct VoxelLabels {
+  std::array<int, 3> count{};       ///< voxels along x, y, z
+  std::array<double, 3> origin{};   ///< lowest corner [m]
+  std::array<double, 3> spacing{};  ///< [m]
+  std::vector<std::uint16_t> labels;
+};
+
+/// @param per_pitch   voxels along one pitch
+/// @param through     voxels over the thickness of the fabric
+VoxelLabels tow_labels(const UnitCell& cell, int per_pitch, int through);
 
 enum class TowDirection { warp, weft };
 

@@ -62,6 +62,7 @@ void run_cell(const Case& a_case, RunFolder& folder, Findings& findings) {
   folder.write("mesoscale/contact.csv",
                contact_csv(fabric.contact, contact_pressures(), fabric.contact.log_fraction.parameter()));
   folder.write("mesoscale/tows.stl", tows_stl(findings.pictures->tows));
+  folder.write("mesoscale/cell.vti", vti(findings.pictures->voxels));
   const auto& s = findings.cell->summary;
   folder.log(fmt::format(
       "mesoscale: {:.4f} kg/m2, crimp {:.4f} %, gap closure {:.3f} deg, contact fraction {:.3f} % at 0.05 mm",

@@ -197,7 +197,7 @@ std::string pvd(std::span<const SeriesFrame> frames) {
   return out + "  </Collection>\n</VTKFile>\n";
 }
 
-std::string vti(const VoxelLabels& voxels) {
+std::string vti(const mesoscale::VoxelLabels& voxels) {
   std::size_t expected = 1;
   for (const int count : voxels.count) expected *= static_cast<std::size_t>(std::max(count, 0));
   if (expected != voxels.labels.size()) {

@@ -1,12 +1,12 @@
 #pragma once
 
 #include <array>
-#include <cstdint>
 #include <span>
 #include <string>
 #include <vector>
 
 #include "macroscale/stamping.h"
+#include "mesoscale/pictures.h"
 
 /// Files for ParaView and VTK: XML with the numbers appended raw and compressed by zlib.
 namespace heddle::pipeline {
@@ -42,16 +42,8 @@ struct SeriesFrame {
 /// A .pvd file: the frames of a series in order of time.
 std::string pvd(std::span<const SeriesFrame> frames);
 
-/// Labels of the voxels of a cell (tow numbers, phases), x fastest.
-struct VoxelLabels {
-  std::array<int, 3> count{};       ///< voxels along x, y, z
-  std::array<double, 3> origin{};   ///< lowest corner [m]
-  std::array<double, 3> spacing{};  ///< [m]
-  std::vector<std::uint16_t> labels;
-};
-
 /// A .vti file (image data), one label a voxel.
 /// @throws OutputError  if the number of labels is not the number of voxels
-std::string vti(const VoxelLabels& voxels);
+std::string vti(const mesoscale::VoxelLabels& voxels);
 
 }  // namespace heddle::pipeline

@@ -177,6 +177,7 @@ WeavePictures weave_pictures(const mesoscale::CellSpec& spec) {
   WeavePictures pictures;
   pictures.height = mesoscale::height_field(cell, 96);
   pictures.section = mesoscale::warp_cut(cell);
+  pictures.voxels = mesoscale::tow_labels(cell, 32, 32);
   const mesoscale::TriMesh mesh = mesoscale::tow_surfaces(cell);
   for (const auto& t : mesh.triangles)
     pictures.tows.push_back({mesh.vertices[t[0]], mesh.vertices[t[1]], mesh.vertices[t[2]]});

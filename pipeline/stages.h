@@ -38,6 +38,7 @@ struct WeavePictures {
   mesoscale::HeightField height;
   std::vector<mesoscale::Outline> section;
   std::vector<Triangle> tows;
+  mesoscale::VoxelLabels voxels;  ///< 32 a pitch, 32 through the thickness
 };
 WeavePictures weave_pictures(const mesoscale::CellSpec& spec);
 

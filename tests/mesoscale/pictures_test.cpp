@@ -1,5 +1,6 @@
 #include "mesoscale/pictures.h"
 
+#include <algorithm>
 #include <catch2/catch.hpp>
 #include <cmath>
 #include <map>
@@ -43,4 +44,26 @@ TEST_CASE("a cut along a warp shows it as a band and every weft as a section", "
     }
   CHECK(highest == Approx(0.75e-3).epsilon(1e-12));
   CHECK(lowest == Approx(-0.75e-3).epsilon(1e-12));
+}
+
+TEST_CASE("voxels fill the tows' volume and stand under the right tow", "[pictures]") {
+  const UnitCell cell = unit_cell(table1(), 0.0);
+  const VoxelLabels voxels = tow_labels(cell, 64, 64);
+  CHECK(voxels.count == std::array<int, 3>{128, 128, 64});
+  CHECK(voxels.spacing[2] * voxels.count[2] == Approx(1.5e-3).epsilon(1e-12));
+  const auto filled = std::count_if(voxels.labels.begin(), voxels.labels.end(), [](auto l) { return l > 0; });
+  const double voxel = voxels.spacing[0] * voxels.spacing[1] * voxels.spacing[2];
+  CHECK(static_cast<double>(filled) * voxel ==
+        Approx(4.0 * 2.0 * area(cell.section) * cell.pitch).epsilon(0.005));
+
+  const auto label = [&](int i, int j, int k) {
+    return voxels.labels[static_cast<std::size_t>((k * voxels.count[1] + j) * voxels.count[0] + i)];
+  };
+  // The first crossing lies at the origin; the next along the weft, warp 1 over or under weft 0, at j = 64.
+  const bool over = cell.weave.warp_over(0, 0);
+  CHECK(label(0, 0, 63) == (over ? 1 : 3));
+  CHECK(label(0, 0, 0) == (over ? 3 : 1));
+  CHECK(label(0, 64, 63) == (over ? 3 : 2));
+  CHECK(label(64, 0, 63) == (over ? 4 : 1));
+  CHECK(label(32, 32, 32) == 0);
 }

@@ -142,7 +142,7 @@ TEST_CASE("arrays of any length are cut into blocks the format allows", "[vtu]")
   // Just below, at and just above one and two blocks of 32768 bytes, and none at all.
   for (const int voxels : {0, 1, 16383, 16384, 16385, 32768, 32769}) {
     CAPTURE(voxels);
-    VoxelLabels labels{{voxels, 1, 1}, {}, {1, 1, 1}, {}};
+    heddle::mesoscale::VoxelLabels labels{{voxels, 1, 1}, {}, {1, 1, 1}, {}};
     for (int i = 0; i < voxels; ++i) labels.labels.push_back(static_cast<std::uint16_t>(7 * i % 65536));
     const VtkFile file = parse(vti(labels));
     CHECK(numbers<std::uint16_t>(file, "label") == labels.labels);
@@ -151,7 +151,8 @@ TEST_CASE("arrays of any length are cut into blocks the format allows", "[vtu]")
 }
 
 TEST_CASE("voxel labels carry the frame of the cell, x fastest", "[vtu]") {
-  VoxelLabels voxels{{3, 2, 1}, {0.5e-3, 0.0, -1e-3}, {1e-4, 2e-4, 3e-4}, {0, 1, 2, 3, 4, 5}};
+  heddle::mesoscale::VoxelLabels voxels{
+      {3, 2, 1}, {0.5e-3, 0.0, -1e-3}, {1e-4, 2e-4, 3e-4}, {0, 1, 2, 3, 4, 5}};
   const VtkFile file = parse(vti(voxels));
   CHECK_THAT(file.xml, Contains("WholeExtent=\"0 3 0 2 0 1\"") && Contains("Origin=\"0.0005 0 -0.001\"") &&
                            Contains("Spacing=\"0.0001 0.0002 0.0003\""));
