@@ -2,10 +2,9 @@
 
 #include <algorithm>
 #include <array>
-#include <fstream>
-#include <sstream>
 #include <stdexcept>
 
+#include "core/csv.h"
 #include "core/units.h"
 #include "friction/friction_test.h"
 
@@ -56,66 +55,42 @@ std::string known_columns() {
   return list;
 }
 
-std::string_view trimmed(std::string_view text) {
-  constexpr std::string_view blank = " \t\r";
-  const auto first = text.find_first_not_of(blank);
-  if (first == std::string_view::npos) return {};
-  return text.substr(first, text.find_last_not_of(blank) - first + 1);
-}
-
-std::vector<std::string_view> split(std::string_view text, char separator) {
-  std::vector<std::string_view> parts;
-  for (;;) {
-    const auto end = text.find(separator);
-    parts.push_back(trimmed(text.substr(0, end)));
-    if (end == std::string_view::npos) return parts;
-    text.remove_prefix(end + 1);
-  }
-}
-
 class TableReader {
  public:
-  TableReader(std::string file, std::string_view header, int line)
-      : file_(std::move(file)), header_(split(header, ',')) {
-    for (const std::string_view name : header_) check_known(name, line);
-    check_present(name_column, line);
-    for (const Column& known : columns) {
-      if (known.required) check_present(known.name, line);
-    }
-  }
-
-  void read(std::string_view text, int line) {
-    const std::vector<std::string_view> cells = split(text, ',');
-    if (cells.size() != header_.size()) {
-      add("friction.table.cells", fmt::format("{}", cells.size()),
-          fmt::format("must have {} cells, as the header has", header_.size()), "Add or remove commas.",
-          "row", line);
-      return;
-    }
-    FrictionTestRow row;
-    for (std::size_t i = 0; i < cells.size(); ++i) read_cell(row, header_[i], cells[i], line);
-    rows_.push_back(std::move(row));
-  }
+  TableReader(const CsvTable& table, std::string file) : table_(table), file_(std::move(file)) {}
 
   /// @throws InputError  if anything was wrong
-  std::vector<FrictionTestRow> finish() {
+  std::vector<FrictionTestRow> rows() {
+    problems_ = table_.problems;
+    for (const std::string& name : header()) check_known(name);
+    check_present(name_column);
+    for (const Column& known : columns)
+      if (known.required) check_present(known.name);
+    std::vector<FrictionTestRow> rows;
+    for (const CsvRow& line : table_.rows) {
+      rows.emplace_back();
+      for (std::size_t i = 0; i < line.cells.size(); ++i)
+        read_cell(rows.back(), header()[i], line.cells[i], line.line);
+    }
     if (!problems_.empty()) throw InputError(std::move(problems_));
-    return std::move(rows_);
+    return rows;
   }
 
  private:
-  void check_known(std::string_view name, int line) {
+  const std::vector<std::string>& header() const { return table_.header.cells; }
+
+  void check_known(std::string_view name) {
     if (name == name_column || find_column(name) || std::ranges::count(passed_over, name) > 0) return;
     add("friction.table.column.unknown", "", "is no column of a friction-test table",
-        "Known columns: " + known_columns() + ".", name, line);
+        "Known columns: " + known_columns() + ".", name, table_.header.line);
   }
 
-  void check_present(std::string_view name, int line) {
-    const auto count = std::ranges::count(header_, name);
+  void check_present(std::string_view name) {
+    const auto count = std::ranges::count(header(), name);
     if (count == 1) return;
     add(count == 0 ? "friction.table.column.missing" : "friction.table.column.twice", "",
         count == 0 ? "must be a column of the table" : "must be there once",
-        "Known columns: " + known_columns() + ".", name, line);
+        "Known columns: " + known_columns() + ".", name, table_.header.line);
   }
 
   void read_cell(FrictionTestRow& row, std::string_view name, std::string_view cell, int line) {
@@ -142,9 +117,8 @@ class TableReader {
                          .line = line});
   }
 
+  const CsvTable& table_;
   std::string file_;
-  std::vector<std::string_view> header_;
-  std::vector<FrictionTestRow> rows_;
   Problems problems_;
 };
 
@@ -195,41 +169,11 @@ std::string format_friction_table(std::span<const FrictionTestRow> rows,
 }
 
 std::vector<FrictionTestRow> parse_friction_table(std::string_view text, const std::string& file) {
-  std::optional<TableReader> reader;
-  const std::vector<std::string_view> lines = split(text, '\n');
-  for (std::size_t i = 0; i < lines.size(); ++i) {
-    const int line = static_cast<int>(i) + 1;
-    if (lines[i].empty() || lines[i].front() == '#') continue;
-    if (reader) {
-      reader->read(lines[i], line);
-    } else {
-      reader.emplace(file, lines[i], line);
-    }
-  }
-  if (!reader) {
-    throw InputError({{.id = "friction.table.empty",
-                       .key = "",
-                       .value = "",
-                       .rule = "must hold a header line and at least one row",
-                       .way_out = "Columns: " + known_columns() + ".",
-                       .file = file}});
-  }
-  return reader->finish();
+  return TableReader(parse_csv(text, file), file).rows();
 }
 
 std::vector<FrictionTestRow> read_friction_table(const std::string& path) {
-  std::ifstream stream(path);
-  std::stringstream text;
-  if (stream) text << stream.rdbuf();
-  if (!stream) {
-    throw InputError({{.id = "friction.table.unreadable",
-                       .key = "",
-                       .value = "",
-                       .rule = "must be a readable file",
-                       .way_out = "Check the path and its permissions.",
-                       .file = path}});
-  }
-  return parse_friction_table(text.str(), path);
+  return parse_friction_table(read_text_file(path), path);
 }
 
 }  // namespace heddle::friction

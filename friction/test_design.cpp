@@ -1,13 +1,16 @@
 #include "friction/test_design.h"
 
+#include <algorithm>
+#include <array>
 #include <charconv>
-#include <fstream>
 #include <functional>
 #include <map>
 #include <numbers>
 #include <sstream>
 
 #include <fmt/format.h>
+
+#include "core/csv.h"
 
 namespace heddle::friction {
 
@@ -30,39 +33,35 @@ const std::map<std::string, Factor>& factors() {
   return all;
 }
 
-std::vector<std::string> split(const std::string& line, char separator) {
-  std::vector<std::string> cells;
-  std::stringstream stream(line);
-  for (std::string cell; std::getline(stream, cell, separator);) cells.push_back(cell);
-  return cells;
-}
+constexpr std::array<std::string_view, 4> layout{"parameter", "unit", "baseline", "additional"};
 
 class Reader {
  public:
-  Reader(const std::string& text, std::string file) : text_(text), file_(std::move(file)) {}
+  Reader(const CsvTable& table, std::string file) : table_(table), file_(std::move(file)) {}
 
   TestDesign read() {
-    std::stringstream stream(text_);
-    std::string line;
-    while (std::getline(stream, line)) {
-      ++line_;
-      if (line.empty() || line[0] == '#' || line_ == 1) continue;
-      read_factor(line);
-    }
+    problems_ = table_.problems;
+    line_ = table_.header.line;
+    if (!std::ranges::equal(table_.header.cells, layout))
+      report("header", "", fmt::format("{}", fmt::join(table_.header.cells, ",")),
+             fmt::format("must be {}", fmt::join(layout, ",")), "One line a parameter follows.");
+    else
+      for (const CsvRow& row : table_.rows) read_factor(row);
+    line_ = 0;
     for (const auto& [name, factor] : factors())
-      if ((design_.*factor.levels).empty())
+      if (problems_.empty() && (design_.*factor.levels).empty())
         report("missing", name, "", "must have a line", "Give at least its baseline.");
     if (!problems_.empty()) throw InputError(std::move(problems_));
     return std::move(design_);
   }
 
  private:
-  void read_factor(const std::string& line) {
-    const auto cells = split(line, ',');
-    const auto found = cells.empty() ? factors().end() : factors().find(cells[0]);
-    if (found == factors().end() || cells.size() < 3) {
-      report("line", cells.empty() ? "" : cells[0], line,
-             "must read parameter,unit,baseline,additional with a known parameter",
+  void read_factor(const CsvRow& row) {
+    line_ = row.line;
+    const auto& cells = row.cells;
+    const auto found = factors().find(cells[0]);
+    if (found == factors().end()) {
+      report("parameter", cells[0], "", "is no parameter of the friction test",
              "Known are velocity, normal_force, tool_temperature, fabric_temperature and orientation.");
       return;
     }
@@ -70,8 +69,8 @@ class Reader {
     if (cells[1] != factor.unit)
       report("unit", cells[0], cells[1], fmt::format("must be in {}", factor.unit), "Convert the levels.");
     add_level(factor, cells[0], cells[2]);
-    if (cells.size() > 3)
-      for (const std::string& level : split(cells[3], ';')) add_level(factor, cells[0], level);
+    std::stringstream levels(cells[3]);
+    for (std::string level; std::getline(levels, level, ';');) add_level(factor, cells[0], level);
   }
 
   void add_level(const Factor& factor, const std::string& name, const std::string& text) {
@@ -88,7 +87,7 @@ class Reader {
     problems_.push_back({"friction.design." + id, key, value, rule, way_out, file_, line_});
   }
 
-  const std::string& text_;
+  const CsvTable& table_;
   std::string file_;
   int line_ = 0;
   TestDesign design_;
@@ -149,17 +148,11 @@ std::vector<FrictionTestRow> all_combinations(const TestDesign& design) {
 }
 
 TestDesign parse_test_design(const std::string& text, const std::string& file) {
-  return Reader(text, file).read();
+  return Reader(parse_csv(text, file), file).read();
 }
 
 TestDesign read_test_design(const std::string& path) {
-  std::ifstream stream(path);
-  if (!stream)
-    throw InputError({{"friction.design.file", "friction_test.design", path, "must be a readable file",
-                       "Check the path; it is relative to the configuration."}});
-  std::stringstream text;
-  text << stream.rdbuf();
-  return parse_test_design(text.str(), path);
+  return parse_test_design(read_text_file(path), path);
 }
 
 }  // namespace heddle::friction

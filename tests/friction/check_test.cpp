@@ -189,15 +189,15 @@ TEST_CASE("a friction test table is refused with every problem and its line", "[
   using Ids = std::vector<std::string>;
 
   CHECK(ids(problems_of(header + "a,1,2,3,4\n")).empty());
-  CHECK(ids(problems_of("")) == Ids{"friction.table.empty"});
-  CHECK(ids(problems_of("# only a comment\n\n")) == Ids{"friction.table.empty"});
+  CHECK(ids(problems_of("")) == Ids{"csv.empty"});
+  CHECK(ids(problems_of("# only a comment\n\n")) == Ids{"csv.empty"});
   CHECK(ids(problems_of("case,velocity_mm_s,normal_force_N,tool_temperature_C\n")) ==
         Ids{"friction.table.column.missing"});
   CHECK(ids(problems_of("case," + header)) == Ids{"friction.table.column.twice"});
   CHECK(ids(problems_of("speed," + header)) == Ids{"friction.table.column.unknown"});
 
   const Problems two = problems_of(header + "a,1,2,3\nb,fast,2,3,\n");
-  REQUIRE(ids(two) == Ids{"friction.table.cells", "friction.table.number", "friction.table.number"});
+  REQUIRE(ids(two) == Ids{"csv.cells", "friction.table.number", "friction.table.number"});
   CHECK(two[0].line == 2);
   CHECK(two[1].line == 3);
   CHECK(two[1].key == "velocity_mm_s");

@@ -22,7 +22,7 @@ TEST_CASE("a design with faults is refused with all of them and their lines",
   try {
     parse_test_design(
         "parameter,unit,baseline,additional\nvelocity,m/"
-        "s,16.6,1.66\nnormal_force,N,abc,218;\nhumidity,-,1,2\n",
+        "s,16.6,1.66\nnormal_force,N,abc,218;\nhumidity,-,1,2\norientation,deg\n",
         "design.csv");
     FAIL("was accepted");
   } catch (const heddle::InputError& error) {
@@ -32,7 +32,18 @@ TEST_CASE("a design with faults is refused with all of them and their lines",
     };
     CHECK(has("friction.design.unit", 2));
     CHECK(has("friction.design.number", 3));
-    CHECK(has("friction.design.line", 4));
-    CHECK(has("friction.design.missing", 4));
+    CHECK(has("friction.design.parameter", 4));
+    CHECK(has("csv.cells", 5));
   }
+  const auto first_id = [](const char* text) {
+    try {
+      parse_test_design(text, "design.csv");
+    } catch (const heddle::InputError& error) {
+      return error.problems().front().id;
+    }
+    return std::string("accepted");
+  };
+  CHECK(first_id("velocity,mm/s,16.6,1.66\n") == "friction.design.header");
+  CHECK(first_id("parameter,unit,baseline,additional\nvelocity,mm/s,16.6,1.66\n") ==
+        "friction.design.missing");
 }
