@@ -8,6 +8,7 @@
 #include <sstream>
 
 #include "core/units.h"
+#include "friction/calibrate.h"
 #include "pipeline/outputs.h"
 
 namespace heddle::pipeline {
@@ -287,6 +288,32 @@ Problems check_table(const std::filesystem::path& file, bool measured_force_need
   }
 }
 
+/// Whether the table can fix the law's constants at all; the contact area that a real pressure would bring
+/// moves their values, not how many the rows can tell apart.
+Problems check_calibration(const FrictionSpec& spec) {
+  if (!spec.calibrated()) return {};
+  const std::string file = spec.calibration_data.lexically_normal().string();
+  Problems problems;
+  try {
+    friction::calibrate(spec.model, friction::read_friction_table(file), spec.rig, {},
+                        {.hold_tool_temperature_slope = !spec.fit_temperature_slope, .search = {}});
+  } catch (const InputError& error) {
+    problems = error.problems();
+    for (Problem& problem : problems) problem.file = file;
+  }
+  return problems;
+}
+
+Problems check_friction(const FrictionSpec& spec, const Settings& settings) {
+  Problems problems = check_constants_beside_data(settings);
+  append(problems, check_fitted_slope(settings));
+  append(problems, check_rig(spec, settings));
+  append_new(problems, check_friction_model(spec));
+  append(problems, check_table(spec.calibration_data, true));
+  if (problems.empty()) append(problems, check_calibration(spec));
+  return problems;
+}
+
 /// The fabric passes between punch and die.
 Problems check_clearance(const mesoscale::CellSpec& cell, const macroscale::StampingSpec& stamping) {
   constexpr double rounding = 1e-9;  // [m]: lets 71.5 mm - 70 mm hold a fabric of 1.5 mm
@@ -308,11 +335,7 @@ Problems check_between_keys(const Case& a_case, const Problems& known) {
   Problems problems;
   if (a_case.cell && cell_read) append(problems, mesoscale::check(*a_case.cell));
   if (a_case.friction && !any_problem_below(known, friction_blocks)) {
-    append(problems, check_constants_beside_data(a_case.settings));
-    append(problems, check_fitted_slope(a_case.settings));
-    append(problems, check_rig(*a_case.friction, a_case.settings));
-    append_new(problems, check_friction_model(*a_case.friction));
-    append(problems, check_table(a_case.friction->calibration_data, true));
+    append(problems, check_friction(*a_case.friction, a_case.settings));
   }
   if (a_case.friction_test && a_case.friction_test->data != a_case.friction->calibration_data) {
     append(problems, check_table(a_case.friction_test->data, false));

@@ -64,7 +64,9 @@ void calibrate_law(FrictionStage& stage, const FrictionSpec& spec, const frictio
   stage.calibration = friction::calibrate_band(spec.model, rows, spec.rig, area, options);
   stage.model = stage.calibration->assumed.model;
   add_calibration_notes(stage, spec);
-  if (!std::holds_alternative<friction::HerseyPower>(spec.model.law)) return;
+  // One parameter more than the law's own: only where the pulls leave a degree of freedom for it.
+  const bool room = stage.calibration->assumed.degrees_of_freedom > 0;
+  if (!room || !std::holds_alternative<friction::HerseyPower>(spec.model.law)) return;
   stage.area_exponent =
       friction::area_exponent_that_fits(spec.model.film, spec.model.effects, rows, spec.rig);
   std::string note =

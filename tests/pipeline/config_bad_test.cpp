@@ -68,6 +68,8 @@ const std::vector<BadFile> bad_files{
     {"slow_down_longer_than_the_stroke", {{"process.punch.slow_down.range", 5}}},
     {"speed_scale_zero", {{"process.punch.speed_scale.range", 5}}},
     {"syntax", {{"yaml.syntax", 4}}},
+    {"table_too_short", {{"friction.calibration.rows", 0}}},
+    {"table_with_semicolons", {{"csv.separator", 1}}},
     {"table_with_nan", {{"friction.table.number", 3}}},
     {"tag", {{"resin.power_index.tag", 4}}},
     {"tow_without_room_for_its_material", {{"weave.tow_thickness.holds_material", 3}}},
