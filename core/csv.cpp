@@ -1,9 +1,8 @@
 #include "core/csv.h"
 
-#include <fstream>
-#include <sstream>
-
 #include <fmt/format.h>
+
+#include "core/text_file.h"
 
 namespace heddle {
 namespace {
@@ -77,19 +76,6 @@ CsvTable parse_csv(std::string_view text, const std::string& file) {
   if (table.header.cells.empty())
     refuse("csv.empty", file, 0, "holds no table", "Write a header line and a line for each row.");
   return table;
-}
-
-std::string read_text_file(const std::filesystem::path& path) {
-  std::error_code unknown;  // a file that cannot be looked at is told apart by the attempt to read it
-  if (!std::filesystem::exists(path, unknown) && !unknown)
-    refuse("file.missing", path.string(), 0, "does not exist", "Check the path.");
-  if (std::filesystem::is_directory(path, unknown))
-    refuse("file.folder", path.string(), 0, "is a folder", "Name a file in it.");
-  std::ifstream stream(path, std::ios::binary);
-  std::ostringstream text;
-  if (stream) text << stream.rdbuf();
-  if (!stream) refuse("file.unreadable", path.string(), 0, "cannot be read", "Check its permissions.");
-  return text.str();
 }
 
 CsvTable read_csv(const std::filesystem::path& path) {

@@ -28,11 +28,7 @@ struct CsvTable {
 /// @throws InputError  where no table can be read at all: csv.empty, csv.encoding, csv.separator
 CsvTable parse_csv(std::string_view text, const std::string& file);
 
-/// @throws InputError  as parse_csv, and file.missing, file.folder or file.unreadable
+/// @throws InputError  as parse_csv and read_text_file
 CsvTable read_csv(const std::filesystem::path& path);
-
-/// The bytes of a file that the user named.
-/// @throws InputError  file.missing, file.folder or file.unreadable
-std::string read_text_file(const std::filesystem::path& path);
 
 }  // namespace heddle

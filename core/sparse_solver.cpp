@@ -7,8 +7,8 @@
 #include <cholmod.h>
 #include <fmt/format.h>
 
-// OpenBLAS's own calls; its headers are not needed for them. They also make sure at link time that it is OpenBLAS
-// that serves CHOLMOD: the reference BLAS takes 4 to 8 times longer.
+// OpenBLAS's own calls; its headers are not needed for them. They also make sure at link time that it is
+// OpenBLAS that serves CHOLMOD: the reference BLAS takes 4 to 8 times longer.
 extern "C" {
 void openblas_set_num_threads(int threads);
 char* openblas_get_config();
@@ -116,6 +116,8 @@ void SparseSolver::solve(std::span<double> right_hand_side) {
   std::copy(x, x + right_hand_side.size(), right_hand_side.begin());
 }
 
-std::string blas_name() { return fmt::format("{} ({} kernels)", openblas_get_config(), openblas_get_corename()); }
+std::string blas_name() {
+  return fmt::format("{} ({} kernels)", openblas_get_config(), openblas_get_corename());
+}
 
 }  // namespace heddle

@@ -218,7 +218,9 @@ class UnitParser {
     for (const Symbol& symbol : symbols) {
       if (symbol.name == name) return symbol.unit;
     }
-    refuse(fmt::format("has the unknown unit \"{}\"", name), example_of_units);
+    const bool degrees = name == "C" || name == "celsius" || name == "Celsius" || name == "Kelvin";
+    refuse(fmt::format("has the unknown unit \"{}\"", name),
+           degrees ? "Temperatures are in degC or K." : example_of_units);
   }
 
   [[noreturn]] void refuse_rest() const {
@@ -322,6 +324,11 @@ NumberAndUnit split(std::string_view text) {
     digit_count += end - after_point;
   }
   if (digit_count == 0) refuse_number(text);
+
+  if (end + 1 < text.size() && text[end] == ',' && is_digit(text[end + 1])) {
+    refuse("has a comma in its number",
+           "The decimal sign is a point, as in 0.75; thousands are not separated.");
+  }
 
   NumberAndUnit result;
   const std::size_t skip_plus = text.front() == '+' ? 1 : 0;

@@ -5,6 +5,7 @@
 #include <stdexcept>
 
 #include "core/csv.h"
+#include "core/text_file.h"
 #include "core/units.h"
 #include "friction/friction_test.h"
 

@@ -11,6 +11,7 @@
 #include <fmt/format.h>
 
 #include "core/csv.h"
+#include "core/text_file.h"
 
 namespace heddle::friction {
 

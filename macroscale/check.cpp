@@ -34,7 +34,7 @@ Problems check(const StampingSpec& spec) {
   const double half = 0.5 * std::min(blank.size[0], blank.size[1]);
   f.demand(half > die_edge && half > binder.inner_radius + binder.edge_fillet, "blank.size.reach",
            "blank.size", fmt::format("[{}, {}]", mm(blank.size[0]), mm(blank.size[1])),
-           fmt::format("must reach beyond the die's edge (2 x {}) and the binder's ({})", mm(die_edge),
+           fmt::format("must reach beyond the die's edge ({}) and the binder's ({})", mm(2.0 * die_edge),
                        mm(2.0 * (binder.inner_radius + binder.edge_fillet))),
            "A blank that lies inside the opening is held by nothing: enlarge it, or the tools shrink.");
   f.demand(blank.spacing > 0.0 && blank.spacing < 0.25 * half, "blank.spacing.range", "blank.spacing",

@@ -3,10 +3,9 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <fstream>
 #include <iterator>
-#include <sstream>
 
+#include "core/text_file.h"
 #include "core/units.h"
 #include "friction/calibrate.h"
 #include "pipeline/outputs.h"
@@ -347,6 +346,8 @@ Problems check_between_keys(const Case& a_case, const Problems& known) {
   return problems;
 }
 
+constexpr double melting_range_of_polypropylene = 433.15;  // its lower end [K]; recalled
+
 /// Values no source of ours measures, said wherever the case is shown.
 void note_assumptions(Case& a_case) {
   const Setting* area = a_case.settings.find("friction.calibration.plate_area");
@@ -354,6 +355,14 @@ void note_assumptions(Case& a_case) {
     a_case.notes.push_back(fmt::format(
         "friction.calibration.plate_area = {} is assumed: the paper does not give it", area->written));
   }
+  if (a_case.stamping && a_case.cell->state == mesoscale::CellState::consolidated)
+    a_case.notes.push_back(
+        "cell.state = consolidated: the solid part's fabric is stamped, not the molten one");
+  if (a_case.stamping && a_case.stamping->process.blank_temperature < melting_range_of_polypropylene)
+    a_case.notes.push_back(fmt::format(
+        "process.blank_temperature = {} lies below the melting range of polypropylene (about 160 degC, "
+        "recalled): the melt's viscosity is carried on to where the resin is solid",
+        a_case.settings.find("process.blank_temperature")->written));
   const bool artefact = a_case.stamping && (a_case.stamping->artefact.mass_scaling != 1.0 ||
                                             a_case.stamping->artefact.stabilisation != 0.0);
   if (artefact) a_case.notes.push_back("artefact: a non-physical help is switched on");
@@ -388,15 +397,7 @@ Case read_case_text(const std::string& text, const std::string& file, const std:
 }
 
 Case read_case(const std::filesystem::path& file, const std::vector<std::string>& assignments) {
-  std::ifstream stream(file, std::ios::binary);
-  std::ostringstream text;
-  if (stream) text << stream.rdbuf();
-  std::error_code ignored;  // what cannot be looked at is no regular file either
-  if (!stream || !std::filesystem::is_regular_file(file, ignored)) {
-    throw InputError({{"file.unreadable", "", "", "cannot be read",
-                       "Check the path; it is taken from the current folder.", file.string(), 0}});
-  }
-  return read_case_text(text.str(), file.string(), file.parent_path(), assignments);
+  return read_case_text(read_text_file(file), file.string(), file.parent_path(), assignments);
 }
 
 std::vector<std::string> stage_lines(const Case& a_case) {

@@ -59,9 +59,8 @@ std::string nearest(const std::string& word, const std::vector<std::string>& wor
   return best;
 }
 
-std::string way_out_of_unknown(const std::string& block, const std::string& name) {
+std::string way_out_of_unknown(const std::string& block, const std::string& name, const std::string& near) {
   const std::vector<std::string> known = names_below(block);
-  const std::string near = nearest(name, known);
   if (!near.empty()) return fmt::format("The nearest known key is {}.", join_path(block, near));
   for (const Key& key : schema()) {
     if (last_name(key.path) == name) return fmt::format("There is {}.", key.path);
@@ -248,7 +247,10 @@ class ConfigReader {
         read_value(*key, value);
       }
     } else if (!is_block(path)) {
-      report(path, "unknown", value, line, "is not a known key", way_out_of_unknown(block, entry.key));
+      const std::string near = nearest(entry.key, names_below(block));
+      // What was meant is then not missing as well.
+      if (!near.empty()) failed_.insert(join_path(block, near));
+      report(path, "unknown", value, line, "is not a known key", way_out_of_unknown(block, entry.key, near));
     } else if (value.kind == ConfigNode::Kind::map || value.kind == ConfigNode::Kind::empty) {
       config_.settings.blocks.insert(path);
       read_block(value, path);

@@ -229,6 +229,22 @@ const ConfigNode* ConfigNode::find_path(const std::string& path) const {
   return node;
 }
 
+namespace {
+
+/// 1-based; 0 = none is.
+int first_line_indented_by_tab(const std::string& text) {
+  std::istringstream stream(text);
+  int line = 0;
+  for (std::string content; std::getline(stream, content);) {
+    ++line;
+    const std::size_t first = content.find_first_not_of(" \t");
+    if (first != std::string::npos && content.find('\t') < first) return line;
+  }
+  return 0;
+}
+
+}  // namespace
+
 ParsedConfig parse_config(const std::string& text, const std::string& file) {
   ParsedConfig parsed;
   parsed.root = empty_map(file, 1);
@@ -250,9 +266,13 @@ ParsedConfig parse_config(const std::string& text, const std::string& file) {
                                  "Remove everything after the second \"---\".", file, 0});
     }
   } catch (const YAML::Exception& error) {
-    parsed.problems.push_back({"yaml.syntax", "", "", fmt::format("cannot be read as YAML: {}", error.msg),
-                               "Check indentation, colons and brackets near this line.", file,
-                               error.mark.line + 1});
+    if (const int line = first_line_indented_by_tab(text); line > 0)
+      parsed.problems.push_back({"yaml.tab", "", "", "begins with a tab, and YAML is indented by blanks",
+                                 "Replace the tabs at the beginning of lines by blanks.", file, line});
+    else
+      parsed.problems.push_back({"yaml.syntax", "", "", fmt::format("cannot be read as YAML: {}", error.msg),
+                                 "Check indentation, colons and brackets near this line.", file,
+                                 error.mark.line + 1});
   }
   return parsed;
 }
