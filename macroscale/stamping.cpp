@@ -11,21 +11,13 @@
 #include "macroscale/scene.h"
 #include "macroscale/solve.h"
 #include "macroscale/system.h"
+#include "macroscale/tool_set.h"
 
 namespace heddle::macroscale {
 
 namespace {
 
 constexpr int punch = 0, die = 1, binder = 2;  // order of the tools in the scene
-
-// Approach of each face at which the fabric carries the binder force over the ring's flat face.
-double closed_approach(const StampingSpec& spec, const Blank& blank, const Curve& compaction) {
-  const double flat = spec.binder.inner_radius + spec.binder.edge_fillet;
-  double area = 0.0;
-  for (int i = 0; i < blank.nodes(); ++i)
-    if (blank.reference[i].head<2>().norm() >= flat) area += blank.node_area[i];
-  return approach_at(compaction, spec.process.binder_force / area);
-}
 
 // Die and binder stand where they have closed on a flat blank, so that its midplane is at z = 0 and the punch
 // touches it at t = 0 whatever the binder force.
@@ -36,13 +28,13 @@ Scene stamping_scene(const StampingSpec& spec, const mesoscale::FabricProperties
   scene.fabric = &fabric;
   scene.friction = &friction;
   const double half = 0.5 * fabric.thickness;
-  const double closed = half - closed_approach(spec, scene.blank, fabric.compaction.curves().front());
-  scene.tools = {
-      {Role::punch, HemisphereShape{{0.0, 0.0, half}, spec.punch.radius}, Motion::driven, 0.0, 0.0},
-      {Role::die, RingShape{-closed, spec.die.opening_radius, spec.die.fillet, true}, Motion::fixed, 0.0,
-       0.0},
-      {Role::binder, RingShape{closed, spec.binder.inner_radius, spec.binder.edge_fillet, false},
-       Motion::loaded, spec.process.binder_force, spec.binder.mass}};
+  const TouchingTools tools = touching_tools(spec, fabric.thickness, SolveOptions{}.largest_increment);
+  const double pressure = spec.process.binder_force / flat_area(tools.binder, scene.blank);
+  const double closed = half - approach_at(fabric.compaction.curves().front(), pressure);
+  scene.tools = {{Role::punch, raised(tools.punch, half), Motion::driven, 0.0, 0.0},
+                 {Role::die, raised(tools.die, -closed), Motion::fixed, 0.0, 0.0},
+                 {Role::binder, raised(tools.binder, closed), Motion::loaded, spec.process.binder_force,
+                  spec.binder.mass}};
   scene.blank_temperature = spec.process.blank_temperature;
   scene.tool_temperature = spec.process.tool_temperature;
   // Smoothing follows the punch speed, so a rate-free law stays rate-free; creep while sticking is below
@@ -249,7 +241,8 @@ StampingResult run_stamping(const StampingSpec& spec, const mesoscale::FabricPro
   const Problems of_fabric = mesoscale::check(fabric);
   problems.insert(problems.end(), of_fabric.begin(), of_fabric.end());
   if (!problems.empty()) throw InputError(std::move(problems));
-  return Run(spec, fabric, friction, observe).result();
+  const StampingSpec loaded = with_tools_loaded(spec);
+  return Run(loaded, fabric, friction, observe).result();
 }
 
 }  // namespace heddle::macroscale

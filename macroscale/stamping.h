@@ -3,11 +3,14 @@
 #include <array>
 #include <cstdint>
 #include <functional>
+#include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
 #include "core/problem.h"
 #include "friction/model.h"
+#include "macroscale/tool_file.h"
 #include "mesoscale/fabric_properties.h"
 
 namespace heddle::macroscale {
@@ -19,17 +22,27 @@ struct BlankSpec {
   int plies = 1;
 };
 
-struct PunchSpec {        ///< hemisphere with its apex down and a cylinder above
-  double radius = 0.070;  ///< [m]
+/// A tool given by a file instead of by its shape's numbers.
+struct ToolFileSpec {
+  ToolFile source;
+  double voxel = 1e-3;                       ///< of the distance field [m]
+  std::shared_ptr<const LoadedTool> loaded;  ///< what the file holds, once with_tools_loaded has read it
+};
+
+struct PunchSpec {                   ///< hemisphere with its apex down and a cylinder above, or a file
+  double radius = 0.070;             ///< [m]
+  std::optional<ToolFileSpec> file;  ///< then the numbers of the shape are not used
 };
 struct DieSpec {                  ///< plate with a round opening and a filleted edge
   double opening_radius = 0.072;  ///< [m]
   double fillet = 0.020;          ///< [m]
+  std::optional<ToolFileSpec> file;
 };
 struct BinderSpec {             ///< flat ring under force, free to move in z
   double inner_radius = 0.092;  ///< [m]
   double edge_fillet = 2e-3;    ///< [m], keeps contact smooth where fabric leaves it
   double mass = 20.0;           ///< [kg]
+  std::optional<ToolFileSpec> file;
 };
 
 struct ProcessSpec {

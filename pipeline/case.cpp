@@ -173,7 +173,21 @@ macroscale::ProcessSpec process_of(const Settings& settings) {
   return process;
 }
 
-macroscale::StampingSpec stamping_of(const Settings& settings) {
+std::optional<macroscale::ToolFileSpec> tool_file_of(const Settings& settings, const std::string& tool,
+                                                     const std::filesystem::path& folder) {
+  const std::string block = "tools." + tool;
+  if (!settings.has(block + ".file")) return {};
+  macroscale::ToolFileSpec spec;
+  spec.source.file = folder / settings.text(block + ".file");
+  if (settings.has(block + ".length_unit"))
+    spec.source.length_unit = read_quantity("1 " + settings.text(block + ".length_unit"), "mm").value;
+  take(settings, block + ".mesh_size", spec.source.mesh_size);
+  take(settings, block + ".voxel", spec.voxel);
+  spec.source.repair = settings.is(block + ".repair", "on");
+  return spec;
+}
+
+macroscale::StampingSpec stamping_of(const Settings& settings, const std::filesystem::path& folder) {
   macroscale::StampingSpec stamping;
   take(settings, "blank.size", stamping.blank.size);
   take(settings, "blank.orientation", stamping.blank.orientation);
@@ -185,6 +199,9 @@ macroscale::StampingSpec stamping_of(const Settings& settings) {
   take(settings, "tools.binder.inner_radius", stamping.binder.inner_radius);
   take(settings, "tools.binder.edge_fillet", stamping.binder.edge_fillet);
   take(settings, "tools.binder.mass", stamping.binder.mass);
+  stamping.punch.file = tool_file_of(settings, "punch", folder);
+  stamping.die.file = tool_file_of(settings, "die", folder);
+  stamping.binder.file = tool_file_of(settings, "binder", folder);
   stamping.process = process_of(settings);
   take(settings, "artefact.mass_scaling", stamping.artefact.mass_scaling);
   take(settings, "artefact.stabilisation", stamping.artefact.stabilisation);
@@ -201,7 +218,7 @@ Case case_of(const ReadConfig& config, const std::filesystem::path& folder) {
   if (runs(Stage::cell)) result.cell = cell_of(settings);
   if (runs(Stage::friction)) result.friction = friction_of(settings, folder);
   if (runs(Stage::friction_test)) result.friction_test = friction_test_of(settings, folder);
-  if (runs(Stage::stamping)) result.stamping = stamping_of(settings);
+  if (runs(Stage::stamping)) result.stamping = stamping_of(settings, folder);
   result.notes = config.notes;
   result.settings = settings;
   return result;

@@ -225,33 +225,48 @@ std::vector<Key> blank_and_tool_keys() {
       {.path = "blank.plies", .type = KeyType::integer, .presence = defaulted, .default_text = "1", .range = "[1, 1]",
        .stage = stamping, .help = "This version forms one ply."},
       {.path = "tools.punch.shape", .type = KeyType::choice, .presence = required, .choices = {"hemisphere"}, .stage = stamping,
-       .help = "Hemisphere with its apex down and a cylinder above."},
+       .used_when = "!tools.punch.file", .help = "Hemisphere with its apex down and a cylinder above."},
       {.path = "tools.punch.radius", .type = KeyType::quantity, .unit = "mm", .presence = required,
-       .range = "(0 mm, 10000 mm)", .stage = stamping, .help = "Of hemisphere and cylinder."},
+       .range = "(0 mm, 10000 mm)", .stage = stamping, .used_when = "!tools.punch.file", .help = "Of hemisphere and cylinder."},
       {.path = "tools.die.shape", .type = KeyType::choice, .presence = required, .choices = {"ring"}, .stage = stamping,
-       .help = "Plate with a round opening and a filleted edge."},
+       .used_when = "!tools.die.file", .help = "Plate with a round opening and a filleted edge."},
       {.path = "tools.die.opening_radius", .type = KeyType::quantity, .unit = "mm", .presence = required,
-       .range = "(0 mm, 10000 mm)", .stage = stamping, .help = "Radius of the opening below the fillet."},
+       .range = "(0 mm, 10000 mm)", .stage = stamping, .used_when = "!tools.die.file",
+       .help = "Radius of the opening below the fillet."},
       {.path = "tools.die.fillet", .type = KeyType::quantity, .unit = "mm", .presence = required,
-       .range = "(0 mm, 10000 mm)", .stage = stamping, .help = "Radius of the rounded edge."},
+       .range = "(0 mm, 10000 mm)", .stage = stamping, .used_when = "!tools.die.file", .help = "Radius of the rounded edge."},
       {.path = "tools.binder.shape", .type = KeyType::choice, .presence = required, .choices = {"ring"}, .stage = stamping,
-       .help = "Flat ring under force, free to move up and down."},
+       .used_when = "!tools.binder.file", .help = "Flat ring under force, free to move up and down."},
       {.path = "tools.binder.inner_radius", .type = KeyType::quantity, .unit = "mm", .presence = required,
-       .range = "(0 mm, 10000 mm)", .stage = stamping, .help = "Where the binder begins."},
+       .range = "(0 mm, 10000 mm)", .stage = stamping, .used_when = "!tools.binder.file", .help = "Where the binder begins."},
       {.path = "tools.binder.edge_fillet", .type = KeyType::quantity, .unit = "mm", .presence = defaulted,
        .default_text = "2 mm", .range = "(0 mm, 1000 mm)", .stage = stamping,
+       .used_when = "!tools.binder.file",
        .help = "Rounding of the inner edge; keeps contact smooth where fabric leaves it."},
       {.path = "tools.binder.mass", .type = KeyType::quantity, .unit = "kg", .presence = required,
        .range = "(0 kg, )", .stage = stamping, .help = "Of the moving binder."},
-      later("tools.punch.file", "Punch shape from a file."),
-      later("tools.punch.length_unit", "Unit of a tool file."),
-      later("tools.punch.mesh_size", "Mesh size of a tool file."),
-      later("tools.die.file", "Die shape from a file."),
-      later("tools.die.length_unit", "Unit of a tool file."),
-      later("tools.die.mesh_size", "Mesh size of a tool file."),
-      later("tools.binder.file", "Binder shape from a file."),
-      later("tools.binder.length_unit", "Unit of a tool file."),
-      later("tools.binder.mesh_size", "Mesh size of a tool file."),
+  };
+}
+
+// A tool by its file instead of by its shape: a key is then used by the shape or by the file, never by both.
+std::vector<Key> tool_file_keys(const std::string& tool) {
+  const std::string block = "tools." + tool, with_file = block + ".file";
+  const auto stamping = Stage::stamping;
+  return {
+      {.path = with_file, .type = KeyType::file, .presence = optional, .stage = stamping,
+       .help = "STEP, STL or OBJ instead of a shape; z up, x and y as in the press, moved along z until it touches."},
+      {.path = block + ".length_unit", .type = KeyType::choice, .presence = required,
+       .choices = {"mm", "cm", "m", "in"}, .stage = stamping, .used_when = with_file,
+       .help = "Of the file's numbers; a STEP file states its own, which must be the same."},
+      {.path = block + ".mesh_size", .type = KeyType::quantity, .unit = "mm", .presence = defaulted,
+       .default_text = "2 mm", .range = "(0 mm, 1000 mm)", .stage = stamping, .used_when = with_file,
+       .help = "Largest edge on curved faces of a STEP file."},
+      {.path = block + ".voxel", .type = KeyType::quantity, .unit = "mm", .presence = defaulted,
+       .default_text = "1 mm", .range = "(0 mm, 100 mm)", .stage = stamping, .used_when = with_file,
+       .help = "Of the distance field; a twentieth of the radii that matter keeps its error small."},
+      {.path = block + ".repair", .type = KeyType::choice, .presence = defaulted, .default_text = "off",
+       .choices = {"on", "off"}, .stage = stamping, .used_when = with_file,
+       .help = "on: merge equal vertices, drop triangles without area, turn those that face the wrong way."},
   };
 }
 
@@ -302,6 +317,7 @@ std::vector<Key> all_keys() {
   append(keys, calibration_weave_keys());
   append(keys, process_keys());
   append(keys, blank_and_tool_keys());
+  for (const char* tool : {"punch", "die", "binder"}) append(keys, tool_file_keys(tool));
   append(keys, effect_keys());
   append(keys, artefact_keys());
   return keys;
