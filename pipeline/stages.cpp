@@ -183,9 +183,24 @@ WeavePictures weave_pictures(const mesoscale::CellSpec& spec) {
   return pictures;
 }
 
+std::string blank_in_words(const macroscale::BlankSpec& blank) {
+  switch (blank.shape) {
+    case macroscale::BlankShape::rectangle:
+      return fmt::format("{:g} x {:g} mm", 1e3 * blank.size[0], 1e3 * blank.size[1]);
+    case macroscale::BlankShape::circle:
+      return fmt::format("round {:g} mm", 2e3 * blank.radius);
+    case macroscale::BlankShape::polygon:
+      return fmt::format("{}-cornered {:.4g} cm2", blank.polygon.outer.size(),
+                         1e4 * macroscale::area(macroscale::outline_of(blank)));
+  }
+  return "";
+}
+
 double mean_binder_pressure(const macroscale::StampingSpec& spec) {
   const double flat = spec.binder.inner_radius + spec.binder.edge_fillet;
-  const double area = spec.blank.size[0] * spec.blank.size[1] - std::numbers::pi * flat * flat;
+  double area = macroscale::area({macroscale::outline_of(spec.blank).outer, {}}) - std::numbers::pi * flat * flat;
+  for (const macroscale::RoundHole& hole : spec.blank.holes)
+    if (std::hypot(hole.centre[0], hole.centre[1]) > flat) area -= std::numbers::pi * hole.radius * hole.radius;
   return spec.process.binder_force / area;
 }
 
