@@ -47,6 +47,7 @@ constexpr std::array symbols{
     Symbol{"cm", {length, -2}},
     Symbol{"mm", {length, -3}},
     Symbol{"um", {length, -6}},
+    Symbol{"in", {length, -4, 254.0}},
     Symbol{"s", {duration, 0}},
     Symbol{"ms", {duration, -3}},
     Symbol{"us", {duration, -6}},

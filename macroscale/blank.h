@@ -5,6 +5,9 @@
 
 #include <Eigen/Core>
 
+#include "macroscale/cell_piece.h"
+#include "macroscale/outline.h"
+
 namespace heddle::macroscale {
 
 /// Three nodes of a quad's corner: the corner itself and its neighbours along warp and weft.
@@ -22,27 +25,71 @@ struct TowTriple {
   int direction;  ///< 0 = along warp, 1 = along weft
 };
 
-/// Tow-aligned structured grid of one ply: nodes i along warp, j along weft, index = i * (nv + 1) + j.
-/// Trusses (edges), shear corners and bending triples share the nodes, so stiff tows cannot lock against
-/// shear.
+/// Two neighbouring nodes on one tow line.
+struct TowSegment {
+  int from, to;
+  int direction;  ///< 0 = along warp, 1 = along weft
+};
+
+/// A material point as a mean of the corners of one quad.
+struct MaterialPoint {
+  int quad;
+  std::array<double, 4> weight;  ///< of the quad's corners, sum 1; some < 0 just outside the quad
+};
+
+/// A point of the outer edge of the blank.
+struct EdgePoint {
+  MaterialPoint point;
+  Eigen::Vector2d reference;  ///< [m]
+  Eigen::Vector2d inward;     ///< unit normal of the edge, into the blank
+};
+
+/// Tow-aligned structured grid of one ply, trimmed to an outline: lines i across the warp, j across the weft
+/// direction. Every energy of a cell carries its area share, the part of the cell inside the outline. Trusses
+/// (edges), shear corners and bending triples share the nodes, so stiff tows cannot lock against shear.
 struct Blank {
-  int nu = 0, nv = 0;                      ///< cells along warp and weft
+  int nu = 0, nv = 0;                      ///< cells of the grid along warp and weft, before trimming
   std::array<double, 2> spacing{};         ///< [m]
+  std::array<double, 2> warp{1.0, 0.0};    ///< direction of the warp in the x-y plane, unit
+  std::array<double, 2> centre{};          ///< of the grid, along warp and weft [m]
   std::vector<Eigen::Vector3d> reference;  ///< node positions, flat, stress-free [m]
+  std::vector<std::array<int, 2>> grid;    ///< (i, j) of each node, ascending
   std::vector<std::array<int, 4>> quads;   ///< (i,j) (i+1,j) (i+1,j+1) (i,j+1)
+  std::vector<double> share;               ///< per quad: its material area over the cell's; 1 = whole
+  std::vector<TowSegment> segments;
   std::vector<TowTriple> triples;
   std::vector<double> node_area;  ///< tributary area [m^2]
+  std::vector<CellPiece> pieces;  ///< of all quads that the outline cuts, by quad
+  std::vector<EdgePoint> edge;    ///< along the outer edge, about a spacing apart, corners left out
+  Outline outline;                ///< flat, in x and y
+  std::vector<int> node_at;       ///< node of (i, j) at i * (nv + 1) + j, or -1
+  std::vector<int> quad_at;       ///< quad of cell (i, j) at i * nv + j, or -1
 
   int nodes() const { return static_cast<int>(reference.size()); }
-  int node(int i, int j) const { return i * (nv + 1) + j; }
-  double corner_area() const { return 0.25 * spacing[0] * spacing[1]; }
+  /// Node of grid lines i, j; -1 where trimming left none.
+  int node(int i, int j) const { return node_at[i * (nv + 1) + j]; }
+  /// Quad between lines i, i + 1 and j, j + 1; -1 outside the grid and where trimming left none.
+  int quad(int i, int j) const {
+    return i < 0 || j < 0 || i >= nu || j >= nv ? -1 : quad_at[i * nv + j];
+  }
+  double corner_area() const { return 0.25 * spacing[0] * spacing[1]; }  ///< of a whole cell [m^2]
+  /// A point of the flat blank in its cell, or in the nearest one left [m].
+  MaterialPoint locate(const Eigen::Vector2d& reference) const;
 };
+
+/// Cells with a smaller share are dropped and their area given to the neighbour that holds most: their outer
+/// nodes would hang on next to nothing.
+inline constexpr double smallest_share = 0.02;
 
 /// The four corners of a quad.
 std::array<Corner, 4> corners_of(const std::array<int, 4>& quad);
 
-/// Blank of a given size centred at the origin, warp turned by `orientation` against x.
-/// @param spacing  upper bound of the node spacing: ceil(size / spacing) cells each way
+/// Blank of any outline with its warp at `orientation` to x. The grid covers the outline's box along the tows
+/// and shares its centre. Areas sum to the outline's up to rounding.
+/// @param spacing  upper bound of the node spacing: ceil(extent / spacing) cells along each tow direction
+Blank make_blank(const Outline& outline, double spacing, double orientation, double z = 0.0);
+
+/// Rectangle of a given size along warp and weft, centred at the origin and turned as a whole: no cell is cut.
 Blank make_blank(std::array<double, 2> size, double spacing, double orientation = 0.0, double z = 0.0);
 
 }  // namespace heddle::macroscale

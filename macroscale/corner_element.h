@@ -23,6 +23,12 @@ struct CornerLaw {
   double time_step = 0.0;         ///< dt [s]; 0 = no rate term
 };
 
+/// The law of a trimmed cell: its area counts by the share inside the outline.
+inline CornerLaw trimmed(CornerLaw law, double share) {
+  law.area *= share;
+  return law;
+}
+
 /// Energies of one corner [J].
 struct CornerEnergy {
   double tension = 0.0, shear = 0.0, rate = 0.0;

@@ -26,6 +26,7 @@ CornerIncrements corner_increments(const System& system, const StepData& step, c
   CornerIncrements sum;
   for (std::size_t q = 0; q < blank.quads.size(); ++q) {
     const auto corners = corners_of(blank.quads[q]);
+    const CornerLaw here = trimmed(law, blank.share[q]);
     for (std::size_t k = 0; k < 4; ++k) {
       const Corner& c = corners[k];
       const double before = start.corner_angle[4 * q + k];
@@ -33,8 +34,8 @@ CornerIncrements corner_increments(const System& system, const StepData& step, c
                      b0 = start.node(c.along_weft) - start.node(c.node);
       const Vector3d a = end.node(c.along_warp) - end.node(c.node),
                      b = end.node(c.along_weft) - end.node(c.node);
-      const CornerEnergy e0 = corner_energy(law, a0, b0, before), e = corner_energy(law, a, b, before);
-      const CornerGradient g = corner_gradient(law, a, b, before);
+      const CornerEnergy e0 = corner_energy(here, a0, b0, before), e = corner_energy(here, a, b, before);
+      const CornerGradient g = corner_gradient(here, a, b, before);
       sum.tow.stored += e.tension - e0.tension;
       sum.shear.stored += e.shear - e0.shear;
       sum.tow.work += g.tension_a.dot(a - a0) + g.tension_b.dot(b - b0);
@@ -69,11 +70,13 @@ Increment bending_increment(const System& system, const State& start, const Stat
 
 Increment twist_increment(const System& system, const State& start, const State& end) {
   Increment sum;
-  for (const auto& q : system.scene().blank.quads) {
+  const auto& quads = system.scene().blank.quads;
+  for (int quad = 0; quad < static_cast<int>(quads.size()); ++quad) {
+    const auto& q = quads[quad];
     const auto twist = [&](const State& s) -> Vector3d {
       return s.node(q[0]) - s.node(q[1]) + s.node(q[2]) - s.node(q[3]);
     };
-    add(sum, quadratic(system.twist_stiffness(), twist(start), twist(end)));
+    add(sum, quadratic(system.twist_stiffness(quad), twist(start), twist(end)));
   }
   return sum;
 }

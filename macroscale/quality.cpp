@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <functional>
+#include <numbers>
 
 namespace heddle::macroscale {
 
@@ -14,56 +15,93 @@ using Eigen::Vector3d;
 std::vector<std::array<double, 2>> nodal_tow_strain(const Blank& blank, const State& state) {
   std::vector<std::array<double, 2>> strain(blank.nodes(), {0.0, 0.0});
   std::vector<std::array<int, 2>> count(blank.nodes(), {0, 0});
-  const auto segment = [&](int a, int b, std::size_t direction) {
-    const double e = (state.node(b) - state.node(a)).norm() / blank.spacing[direction] - 1.0;
-    for (int n : {a, b}) {
+  for (const TowSegment& segment : blank.segments) {
+    const auto direction = static_cast<std::size_t>(segment.direction);
+    const double length = (state.node(segment.to) - state.node(segment.from)).norm();
+    const double e = length / blank.spacing[direction] - 1.0;
+    for (int n : {segment.from, segment.to}) {
       strain[n][direction] += e;
       ++count[n][direction];
     }
-  };
-  for (int i = 0; i <= blank.nu; ++i)
-    for (int j = 0; j <= blank.nv; ++j) {
-      if (i < blank.nu) segment(blank.node(i, j), blank.node(i + 1, j), 0);
-      if (j < blank.nv) segment(blank.node(i, j), blank.node(i, j + 1), 1);
-    }
+  }
   for (std::size_t n = 0; n < strain.size(); ++n)
     for (std::size_t d = 0; d < 2; ++d)
       if (count[n][d] > 0) strain[n][d] /= count[n][d];
   return strain;
 }
 
-// Inward displacement at each outline node that is not a corner of the blank, else 0.
+Vector3d position_of(const Blank& blank, const State& state, const MaterialPoint& point) {
+  Vector3d x = Vector3d::Zero();
+  for (std::size_t k = 0; k < 4; ++k) x += point.weight[k] * state.node(blank.quads[point.quad][k]);
+  return x;
+}
+
+double draw_in_at(const Blank& blank, const State& state, const MaterialPoint& point,
+                  const Eigen::Vector2d& inward) {
+  Eigen::Vector2d moved = Eigen::Vector2d::Zero();
+  for (std::size_t k = 0; k < 4; ++k) {
+    const int node = blank.quads[point.quad][k];
+    moved += point.weight[k] * (state.node(node) - blank.reference[node]).head<2>();
+  }
+  return inward.dot(moved);
+}
+
 std::vector<double> draw_in(const Blank& blank, const State& state) {
-  std::vector<double> inward(blank.nodes(), 0.0);
-  const Vector3d warp = (blank.reference[blank.node(1, 0)] - blank.reference[blank.node(0, 0)]).normalized();
-  const Vector3d weft = (blank.reference[blank.node(0, 1)] - blank.reference[blank.node(0, 0)]).normalized();
-  const auto measure = [&](int n, const Vector3d& direction) {
-    inward[n] = direction.dot(state.node(n) - blank.reference[n]);
-  };
-  for (int j = 1; j < blank.nv; ++j) {
-    measure(blank.node(0, j), warp);
-    measure(blank.node(blank.nu, j), -warp);
-  }
-  for (int i = 1; i < blank.nu; ++i) {
-    measure(blank.node(i, 0), weft);
-    measure(blank.node(i, blank.nv), -weft);
-  }
+  std::vector<double> inward;
+  for (const EdgePoint& edge : blank.edge)
+    inward.push_back(draw_in_at(blank, state, edge.point, edge.inward));
   return inward;
 }
 
-// Largest difference of a nodal field and its images under the mirrors and the diagonal swap of a square
-// blank, over the field's largest size. `mirror_sign`: -1 for shear, which changes sign in a mirror.
-double symmetry_gap(const Blank& blank, const std::vector<double>& field, double mirror_sign) {
+// Whether the trimmed grid maps onto itself under the mirrors of its tow axes and the swap of warp and weft,
+// about the punch axis.
+bool has_square_symmetry(const Blank& blank) {
+  constexpr double alike = 1e-9;  // of a cell: shares and centres agree to rounding
+  const int n = blank.nu;
+  if (blank.nv != n || std::abs(blank.spacing[0] / blank.spacing[1] - 1.0) > alike) return false;
+  if (std::hypot(blank.centre[0], blank.centre[1]) > alike * blank.spacing[0]) return false;
+  const auto share = [&](int i, int j) { return blank.quad(i, j) < 0 ? 0.0 : blank.share[blank.quad(i, j)]; };
+  for (int i = 0; i < n; ++i)
+    for (int j = 0; j < n; ++j)
+      for (const double image : {share(n - 1 - i, j), share(i, n - 1 - j), share(j, i)})
+        if (std::abs(image - share(i, j)) > alike) return false;
+  return true;
+}
+
+// Largest difference of a nodal field and its images under those symmetries, over the field's largest size.
+// Shear changes sign in a mirror.
+double shear_symmetry_gap(const Blank& blank, const std::vector<double>& shear) {
   double gap = 0.0, size = 0.0;
   const int n = blank.nu;
-  for (int i = 0; i <= n; ++i)
-    for (int j = 0; j <= n; ++j) {
-      const double value = field[blank.node(i, j)];
-      size = std::max(size, std::abs(value));
-      gap = std::max({gap, std::abs(value - mirror_sign * field[blank.node(n - i, j)]),
-                      std::abs(value - mirror_sign * field[blank.node(i, n - j)]),
-                      std::abs(value - field[blank.node(j, i)])});
+  for (int node = 0; node < blank.nodes(); ++node) {
+    const auto [i, j] = blank.grid[node];
+    const double value = shear[node];
+    size = std::max(size, std::abs(value));
+    gap = std::max({gap, std::abs(value + shear[blank.node(n - i, j)]),
+                    std::abs(value + shear[blank.node(i, n - j)]), std::abs(value - shear[blank.node(j, i)])});
+  }
+  return size > 0.0 ? gap / size : 0.0;
+}
+
+// The same of the draw-in along the edge.
+double draw_in_symmetry_gap(const Blank& blank, const State& state) {
+  Eigen::Matrix2d to_tows;
+  to_tows << blank.warp[0], blank.warp[1], -blank.warp[1], blank.warp[0];
+  std::array<Eigen::Matrix2d, 3> images;
+  images[0] << -1, 0, 0, 1;
+  images[1] << 1, 0, 0, -1;
+  images[2] << 0, 1, 1, 0;
+  double gap = 0.0, size = 0.0;
+  for (const EdgePoint& edge : blank.edge) {
+    const double value = draw_in_at(blank, state, edge.point, edge.inward);
+    size = std::max(size, std::abs(value));
+    for (const Eigen::Matrix2d& image : images) {
+      const Eigen::Matrix2d map = to_tows.transpose() * image * to_tows;
+      const double other =
+          draw_in_at(blank, state, blank.locate(map * edge.reference), map * edge.inward);
+      gap = std::max(gap, std::abs(value - other));
     }
+  }
   return size > 0.0 ? gap / size : 0.0;
 }
 
@@ -91,7 +129,16 @@ BlankState blank_state(const System& system, const State& state, const StepData*
   BlankState s;
   s.nu = blank.nu;
   s.nv = blank.nv;
+  s.grid = blank.grid;
   s.quads = blank.quads;
+  s.pieces = blank.pieces;
+  s.outline = blank.outline;
+  for (const EdgePoint& edge : blank.edge) {
+    const Vector3d x = position_of(blank, state, edge.point);
+    s.edge.push_back({{edge.reference.x(), edge.reference.y()},
+                      {x.x(), x.y(), x.z()},
+                      draw_in_at(blank, state, edge.point, edge.inward)});
+  }
   s.time = state.time;
   s.tow_strain = nodal_tow_strain(blank, state);
   s.shear_angle = nodal_shear_angle(blank, state.corner_angle);
@@ -147,8 +194,7 @@ bool on_falling_branch(const System& system, const StepData& step, const State& 
   return false;
 }
 
-void summarise(StampingResult& result, const Blank& blank, const State& state, const StampingSpec& spec,
-               double peak_force_balance) {
+void summarise(StampingResult& result, const Blank& blank, const State& state, double peak_force_balance) {
   StampingSummary& s = result.summary;
   s.steps = static_cast<int>(result.history.size());
   s.energy_residual_max = energy_residual_max(result.history);
@@ -171,12 +217,15 @@ void summarise(StampingResult& result, const Blank& blank, const State& state, c
   const double rubbed = last.friction_punch + last.friction_die + last.friction_binder;
   s.friction_work_outside = rubbed > 0.0 ? last.friction_work_outside / rubbed : 0.0;
   s.symmetry_gap_shear = s.symmetry_gap_draw_in = -1.0;
-  // A right angle as well: the swap of warp and weft maps the square onto itself.
-  const bool square = blank.nu == blank.nv && blank.spacing[0] == blank.spacing[1] &&
-                      std::abs(std::sin(2.0 * spec.blank.orientation)) < 1e-12;
-  if (square) {
-    s.symmetry_gap_shear = symmetry_gap(blank, nodal_shear_angle(blank, state.corner_angle), -1.0);
-    s.symmetry_gap_draw_in = symmetry_gap(blank, draw_in(blank, state), 1.0);
+  if (has_square_symmetry(blank)) {
+    s.symmetry_gap_shear = shear_symmetry_gap(blank, nodal_shear_angle(blank, state.corner_angle));
+    s.symmetry_gap_draw_in = draw_in_symmetry_gap(blank, state);
+  }
+  for (std::size_t k = 0; k < 8; ++k) {
+    const double angle = 0.25 * std::numbers::pi * static_cast<double>(k);
+    const Eigen::Vector2d ray(std::cos(angle), std::sin(angle));
+    const Eigen::Vector2d x = ray_length(blank.outline, {ray.x(), ray.y()}) * ray;
+    s.draw_in_rays[k] = draw_in_at(blank, state, blank.locate(x), -ray);
   }
 }
 

@@ -8,7 +8,7 @@ namespace heddle::macroscale {
 /// Fields of the blank for pictures and files. `step` (may be null) gives pressure, slip and friction.
 BlankState blank_state(const System& system, const State& state, const StepData* step);
 
-/// Inward motion of the outline's nodes along the tows that end there; largest one [m].
+/// Largest motion of a point of the blank's edge along the inward normal of the flat edge [m].
 double largest_draw_in(const Blank& blank, const State& state);
 
 /// What the cumulative columns of a row leave over: work - stored - dissipated [J].
@@ -22,7 +22,6 @@ double energy_residual_max(const std::vector<HistoryRow>& history);
 bool on_falling_branch(const System& system, const StepData& step, const State& end);
 
 /// Fills result.summary from the history and the end state.
-void summarise(StampingResult& result, const Blank& blank, const State& state, const StampingSpec& spec,
-               double peak_force_balance);
+void summarise(StampingResult& result, const Blank& blank, const State& state, double peak_force_balance);
 
 }  // namespace heddle::macroscale

@@ -15,17 +15,16 @@ State initial_state(const Scene& scene) {
 }
 
 std::vector<double> nodal_shear_angle(const Blank& blank, const std::vector<double>& corner_angle) {
-  std::vector<double> sum(blank.nodes(), 0.0);
-  std::vector<int> count(blank.nodes(), 0);
+  std::vector<double> sum(blank.nodes(), 0.0), weight(blank.nodes(), 0.0);
   for (std::size_t q = 0; q < blank.quads.size(); ++q) {
     const auto corners = corners_of(blank.quads[q]);
     for (std::size_t k = 0; k < 4; ++k) {
-      sum[corners[k].node] += corners[k].sign * corner_angle[4 * q + k];
-      ++count[corners[k].node];
+      sum[corners[k].node] += blank.share[q] * (corners[k].sign * corner_angle[4 * q + k]);
+      weight[corners[k].node] += blank.share[q];
     }
   }
   for (std::size_t i = 0; i < sum.size(); ++i)
-    if (count[i] > 0) sum[i] /= count[i];
+    if (weight[i] > 0.0) sum[i] /= weight[i];
   return sum;
 }
 

@@ -55,7 +55,7 @@ struct State {
 /// The blank at rest in its reference position, tools where their shapes say.
 State initial_state(const Scene& scene);
 
-/// Trellis angle averaged at the nodes, signed in tow axes [rad].
+/// Trellis angle averaged at the nodes by the area of the corners that meet there, signed in tow axes [rad].
 std::vector<double> nodal_shear_angle(const Blank& blank, const std::vector<double>& corner_angle);
 
 }  // namespace heddle::macroscale

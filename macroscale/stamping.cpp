@@ -24,12 +24,12 @@ constexpr int punch = 0, die = 1, binder = 2;  // order of the tools in the scen
 Scene stamping_scene(const StampingSpec& spec, const mesoscale::FabricProperties& fabric,
                      const friction::Model& friction) {
   Scene scene;
-  scene.blank = make_blank(spec.blank.size, spec.blank.spacing, spec.blank.orientation);
+  scene.blank = make_blank(outline_of(spec.blank), spec.blank.spacing, spec.blank.orientation);
   scene.fabric = &fabric;
   scene.friction = &friction;
   const double half = 0.5 * fabric.thickness;
   const TouchingTools tools = touching_tools(spec, fabric.thickness, SolveOptions{}.largest_increment);
-  const double pressure = spec.process.binder_force / flat_area(tools.binder, scene.blank);
+  const double pressure = spec.process.binder_force / binder_area(spec);
   const double closed = half - approach_at(fabric.compaction.curves().front(), pressure);
   scene.tools = {{Role::punch, raised(tools.punch, half), Motion::driven, 0.0, 0.0},
                  {Role::die, raised(tools.die, -closed), Motion::fixed, 0.0, 0.0},
@@ -216,7 +216,7 @@ class Run {
 
   StampingResult finish() {
     result_.final_state = blank_state(system_, state_, result_.history.empty() ? nullptr : &last_step_);
-    summarise(result_, scene_.blank, state_, spec_, peak_force_balance_);
+    summarise(result_, scene_.blank, state_, peak_force_balance_);
     return std::move(result_);
   }
 
@@ -234,6 +234,16 @@ class Run {
 };
 
 }  // namespace
+
+Outline outline_of(const BlankSpec& blank) {
+  constexpr double chord = 2e-5;  // of the radius: the area falls short by 3e-5
+  Outline outline = blank.shape == BlankShape::rectangle ? rectangle(blank.size)
+                    : blank.shape == BlankShape::circle  ? circle(blank.radius, chord * blank.radius)
+                                                         : blank.polygon;
+  for (const RoundHole& hole : blank.holes)
+    outline.holes.push_back(circle(hole.radius, 1e-3 * hole.radius, hole.centre).outer);
+  return outline;
+}
 
 StampingResult run_stamping(const StampingSpec& spec, const mesoscale::FabricProperties& fabric,
                             const friction::Model& friction, const StampingObserver& observe) {

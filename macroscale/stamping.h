@@ -10,17 +10,33 @@
 
 #include "core/problem.h"
 #include "friction/model.h"
+#include "macroscale/cell_piece.h"
+#include "macroscale/outline.h"
 #include "macroscale/tool_file.h"
 #include "mesoscale/fabric_properties.h"
 
 namespace heddle::macroscale {
 
+enum class BlankShape { rectangle, circle, polygon };
+
+struct RoundHole {
+  Point2 centre{};      ///< [m]
+  double radius = 0.0;  ///< [m]
+};
+
 struct BlankSpec {
-  std::array<double, 2> size{0.32, 0.32};  ///< along x and y [m]
+  BlankShape shape = BlankShape::rectangle;
+  std::array<double, 2> size{0.32, 0.32};  ///< of a rectangle, along x and y [m]
+  double radius = 0.16;                    ///< of a circle [m]
+  Outline polygon;                         ///< with holes of any shape [m]
+  std::vector<RoundHole> holes;            ///< cut out of any shape
   double orientation = 0.0;                ///< warp against x [rad]
   double spacing = 4.5e-3;                 ///< upper bound of the node spacing [m]
   int plies = 1;
 };
+
+/// The blank's edge about the punch axis, whatever its shape. Circles are polygons within 2e-5 of the radius.
+Outline outline_of(const BlankSpec& blank);
 
 /// A tool given by a file instead of by its shape's numbers.
 struct ToolFileSpec {
@@ -97,13 +113,25 @@ struct HistoryRow {
   double friction_work_outside = 0.0;  ///< done outside the calibrated box [J]
 };
 
-/// The blank at one instant, for pictures and files. Nodes row-major: index = i * (nv + 1) + j, i along warp.
+/// A point of the blank's edge, and how far it has moved in.
+struct EdgeState {
+  std::array<double, 2> reference;  ///< [m]
+  std::array<double, 3> position;   ///< [m]
+  double draw_in = 0.0;             ///< along the inward normal of the flat edge [m]
+};
+
+/// The blank at one instant, for pictures and files. Nodes ascend by grid lines (i, j), i along warp; a whole
+/// rectangle holds all of them, index = i * (nv + 1) + j.
 struct BlankState {
-  int nu = 0, nv = 0;                             ///< cells along warp and weft
+  int nu = 0, nv = 0;                             ///< cells of the grid along warp and weft, before trimming
+  std::vector<std::array<int, 2>> grid;           ///< (i, j) of each node
   std::vector<std::array<double, 2>> reference;   ///< [m]
   std::vector<std::array<double, 3>> position;    ///< [m]
   std::vector<std::array<double, 3>> velocity;    ///< [m/s]
   std::vector<std::array<int, 4>> quads;          ///< (i,j) (i+1,j) (i+1,j+1) (i,j+1)
+  std::vector<CellPiece> pieces;                  ///< the material of those quads that the outline cuts
+  std::vector<EdgeState> edge;                    ///< along the outer edge, corners left out
+  Outline outline;                                ///< of the flat blank
   std::vector<double> shear_angle;                ///< per node, signed [rad]
   std::vector<std::array<double, 2>> tow_strain;  ///< per node {warp, weft} [-]
   std::vector<double> pressure, slip_speed, friction_coefficient,
@@ -112,15 +140,16 @@ struct BlankState {
 };
 
 struct StampingSummary {
-  double peak_punch_force = 0.0;             ///< [N]
-  double shear_angle_max = 0.0;              ///< [rad]
-  double draw_in_max = 0.0;                  ///< [m]
-  double energy_residual_max = 0.0;          ///< [-]
-  double force_balance_residual_max = 0.0;   ///< [-]
+  double peak_punch_force = 0.0;            ///< [N]
+  double shear_angle_max = 0.0;             ///< [rad]
+  double draw_in_max = 0.0;                 ///< [m]
+  std::array<double, 8> draw_in_rays{};     ///< along rays at 0, 45, ... 315 deg to x: inward at the edge [m]
+  double energy_residual_max = 0.0;         ///< [-]
+  double force_balance_residual_max = 0.0;  ///< [-]
   double numerical_dissipation_share = 0.0;  ///< of the punch work [-]
   double twist_share = 0.0;                  ///< largest share of the twist control in the stored energy [-]
-  double symmetry_gap_shear =
-      0.0;  ///< 8 symmetries of the square, share of the maximum [-]; < 0: not a 0/90 square
+  double symmetry_gap_shear = 0.0;  ///< 8 symmetries of the square about the tows, share of the maximum [-];
+                                    ///< < 0: the grid has not got them
   double symmetry_gap_draw_in = 0.0;
   double friction_work_outside = 0.0;  ///< share of friction work outside the calibrated box [-]
   bool falling_branch = false;         ///< the law fell with speed somewhere: the solution may not be unique

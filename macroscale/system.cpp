@@ -73,10 +73,10 @@ double System::bending_stiffness(const TowTriple& t) const {
   return scene_.fabric->bending[t.direction](scene_.blank_temperature) * t.width / (h * h * h);
 }
 
-double System::twist_stiffness() const {
+double System::twist_stiffness(int quad) const {
   const double mean = 0.5 * (scene_.fabric->bending[0](scene_.blank_temperature) +
                              scene_.fabric->bending[1](scene_.blank_temperature));
-  return twist_share * mean / (scene_.blank.spacing[0] * scene_.blank.spacing[1]);
+  return scene_.blank.share[quad] * (twist_share * mean / (scene_.blank.spacing[0] * scene_.blank.spacing[1]));
 }
 
 double System::tool_position(const StepData& step, const VectorXd& x, int k) const {
@@ -131,11 +131,12 @@ PotentialTerms System::potential(const StepData& step, const VectorXd& x) const 
       [&](const tbb::blocked_range<int>& range, Sums s) {
         for (int q = range.begin(); q != range.end(); ++q) {
           const auto corners = corners_of(blank.quads[q]);
+          const CornerLaw here = trimmed(law, blank.share[q]);
           for (int k = 0; k < 4; ++k) {
             const Corner& c = corners[k];
             const Vector3d origin = node_of(x, c.node);
             const CornerEnergy w =
-                corner_energy(law, node_of(x, c.along_warp) - origin, node_of(x, c.along_weft) - origin,
+                corner_energy(here, node_of(x, c.along_warp) - origin, node_of(x, c.along_weft) - origin,
                               step.start->corner_angle[4 * q + k]);
             s.tow += w.tension;
             s.shear += w.shear;
@@ -157,9 +158,8 @@ PotentialTerms System::potential(const StepData& step, const VectorXd& x) const 
   e.bending = ordered_sum(static_cast<int>(blank.triples.size()), [&](int t) {
     return 0.5 * bending_stiffness(blank.triples[t]) * second_difference(x, blank.triples[t]).squaredNorm();
   });
-  const double twist = twist_stiffness();
-  e.twist =
-      ordered_sum(quads, [&](int q) { return 0.5 * twist * twist_of(x, blank.quads[q]).squaredNorm(); });
+  e.twist = ordered_sum(
+      quads, [&](int q) { return 0.5 * twist_stiffness(q) * twist_of(x, blank.quads[q]).squaredNorm(); });
 
   const int tools = static_cast<int>(scene_.tools.size());
   for (int k = 0; k < tools; ++k) {
@@ -203,11 +203,12 @@ VectorXd System::full_gradient(const StepData& step, const VectorXd& x) const {
     for_each(static_cast<int>(colour.size()), [&](int index) {
       const int q = colour[index];
       const auto corners = corners_of(blank.quads[q]);
+      const CornerLaw here = trimmed(law, blank.share[q]);
       for (int k = 0; k < 4; ++k) {
         const Corner& c = corners[k];
         const Vector3d origin = node_of(x, c.node);
         const CornerGradient w =
-            corner_gradient(law, node_of(x, c.along_warp) - origin, node_of(x, c.along_weft) - origin,
+            corner_gradient(here, node_of(x, c.along_warp) - origin, node_of(x, c.along_weft) - origin,
                             step.start->corner_angle[4 * q + k]);
         const Vector3d a = w.a(), b = w.b();
         g.segment<3>(3 * c.along_warp) += a;
@@ -222,9 +223,9 @@ VectorXd System::full_gradient(const StepData& step, const VectorXd& x) const {
     g.segment<3>(3 * t.middle) -= 2.0 * force;
     g.segment<3>(3 * t.after) += force;
   }
-  const double twist = twist_stiffness();
-  for (const auto& q : blank.quads) {
-    const Vector3d force = twist * twist_of(x, q);
+  for (int quad = 0; quad < static_cast<int>(blank.quads.size()); ++quad) {
+    const auto& q = blank.quads[quad];
+    const Vector3d force = twist_stiffness(quad) * twist_of(x, q);
     g.segment<3>(3 * q[0]) += force;
     g.segment<3>(3 * q[1]) -= force;
     g.segment<3>(3 * q[2]) += force;
@@ -308,7 +309,7 @@ void System::build_pattern() {
       corner_slots_.push_back(slots);
     }
   for (int q = 0; q < static_cast<int>(blank.quads.size()); ++q) {
-    const int i = blank.quads[q][0] / (blank.nv + 1), j = blank.quads[q][0] % (blank.nv + 1);
+    const auto [i, j] = blank.grid[blank.quads[q][0]];
     colours_[2 * (i % 2) + j % 2].push_back(q);
   }
 
@@ -345,11 +346,13 @@ void System::assemble_constant() {
     add(t.middle, t.after, -2.0 * k);
     add(t.before, t.after, k);
   }
-  const double twist = twist_stiffness();
   constexpr std::array<double, 4> sign = {1.0, -1.0, 1.0, -1.0};
-  for (const auto& q : scene_.blank.quads)
+  for (int quad = 0; quad < static_cast<int>(scene_.blank.quads.size()); ++quad) {
+    const auto& q = scene_.blank.quads[quad];
+    const double twist = twist_stiffness(quad);
     for (int a = 0; a < 4; ++a)
       for (int b = 0; b <= a; ++b) add(q[a], q[b], twist * sign[a] * sign[b]);
+  }
 }
 
 void System::add_corners(const StepData& step, const VectorXd& x, Filter filter) {
@@ -358,11 +361,12 @@ void System::add_corners(const StepData& step, const VectorXd& x, Filter filter)
     for_each(static_cast<int>(colour.size()), [&](int index) {
       const int q = colour[index];
       const auto corners = corners_of(scene_.blank.quads[q]);
+      const CornerLaw here = trimmed(law, scene_.blank.share[q]);
       for (int k = 0; k < 4; ++k) {
         const Corner& c = corners[k];
         const Vector3d origin = node_of(x, c.node);
         const CornerHessian h =
-            corner_hessian(law, node_of(x, c.along_warp) - origin, node_of(x, c.along_weft) - origin,
+            corner_hessian(here, node_of(x, c.along_warp) - origin, node_of(x, c.along_weft) - origin,
                            step.start->corner_angle[4 * q + k], filter);
         const std::array<Matrix3d, 6> part = {h.aa + h.ab + h.ab.transpose() + h.bb,
                                               h.aa,

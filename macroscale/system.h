@@ -69,7 +69,7 @@ class System {
   ToolContact tool_contact(const StepData& step, const Eigen::VectorXd& x, int k, int i) const;
   /// Velocity of node i against tool k over the step [m/s].
   Eigen::Vector3d relative_velocity(const StepData& step, const Eigen::VectorXd& x, int k, int i) const;
-  /// Corner law of this step (time step and rate term included).
+  /// Corner law of this step in a whole cell (time step and rate term included); `trimmed` gives a cut cell's.
   CornerLaw corner_law(const StepData& step) const;
 
   const Curve& compaction() const { return compaction_; }
@@ -79,7 +79,7 @@ class System {
   FrictionSettings friction_settings() const { return {scene_.friction, scene_.slip_smoothing}; }
   /// Energies and forces of the constant (quadratic) terms.
   double bending_stiffness(const TowTriple& triple) const;
-  double twist_stiffness() const;
+  double twist_stiffness(int quad) const;
 
  private:
   void build_pattern();

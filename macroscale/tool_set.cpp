@@ -8,6 +8,7 @@
 #include <fmt/format.h>
 #include <tbb/parallel_reduce.h>
 
+#include "macroscale/blank.h"
 #include "macroscale/mesh_distance.h"
 #include "macroscale/tool_band.h"
 
@@ -21,7 +22,8 @@ using Eigen::Vector3d;
 constexpr double flat_tolerance = 1e-6;  // [m]
 
 struct Heights {
-  double low = std::numeric_limits<double>::infinity(), high = -std::numeric_limits<double>::infinity();  ///< [m]
+  double low = std::numeric_limits<double>::infinity(),
+         high = -std::numeric_limits<double>::infinity();  ///< [m]
 };
 
 Heights heights(const TriangleMesh& mesh) {
@@ -74,8 +76,9 @@ constexpr std::array<Role, 3> roles = {Role::punch, Role::die, Role::binder};
 std::array<double, 2> extent(const Outline& outline) {
   std::array<double, 2> size{};
   for (std::size_t c = 0; c < 2; ++c) {
-    const auto [low, high] = std::minmax_element(outline.outer.begin(), outline.outer.end(),
-                                                 [c](const Point2& a, const Point2& b) { return a[c] < b[c]; });
+    const auto [low, high] =
+        std::minmax_element(outline.outer.begin(), outline.outer.end(),
+                            [c](const Point2& a, const Point2& b) { return a[c] < b[c]; });
     size[c] = (*high)[c] - (*low)[c];
   }
   return size;
@@ -126,8 +129,8 @@ Nearest nearer(const Nearest& a, const Nearest& b) {
 
 // Where the vertices of one tool come nearest to another while the punch goes down. `sign` is -1 where the
 // vertices are the punch's, +1 where they belong to the tool it passes.
-Nearest nearest_on_stroke(const Solid& of_vertices, double base_of_vertices, const Solid& other, double base_of_other,
-                          double stroke, double sign) {
+Nearest nearest_on_stroke(const Solid& of_vertices, double base_of_vertices, const Solid& other,
+                          double base_of_other, double stroke, double sign) {
   constexpr int positions = 8;
   const auto& vertices = of_vertices.mesh()->vertices;
   Nearest nearest;
@@ -169,19 +172,14 @@ Problems check_passage(const StampingSpec& spec, Role other, double thickness) {
                ? fmt::format("cuts {:.3g} mm into the punch", -1e3 * nearest.distance)
                : fmt::format("leaves {:.3g} mm beside the punch, less than half the fabric's {:.4g} mm",
                              1e3 * nearest.distance, 1e3 * thickness),
-           fmt::format("At a stroke of {:.4g} mm near ({:.4g}, {:.4g}, {:.4g}) mm: check the files' units and places "
-                       "in x and y, or shorten the stroke.",
-                       1e3 * nearest.stroke, 1e3 * nearest.at.x(), 1e3 * nearest.at.y(), 1e3 * nearest.at.z())}};
+           fmt::format(
+               "At a stroke of {:.4g} mm near ({:.4g}, {:.4g}, {:.4g}) mm: check the files' units and places "
+               "in x and y, or shorten the stroke.",
+               1e3 * nearest.stroke, 1e3 * nearest.at.x(), 1e3 * nearest.at.y(), 1e3 * nearest.at.z())}};
 }
 
 Problems check_hold(const StampingSpec& spec) {
-  if (!spec.binder.file) return {};
-  Solid binder(spec, Role::binder);
-  binder.prepare();
-  const Blank blank = make_blank(outline_of(spec.blank), spec.blank.spacing, spec.blank.orientation);
-  const double below = 1e-3;
-  for (const Vector3d& x : blank.reference)
-    if (std::abs(binder.distance_to({x.x(), x.y(), -below}) - below) < flat_tolerance) return {};
+  if (!spec.binder.file || binder_area(spec) > 0.0) return {};
   return {{"tools.binder.hold", "tools.binder", "", "has no flat lower face over the blank",
            "The binder presses by its lowest face, which must be level and reach over the blank's edge."}};
 }
@@ -219,9 +217,9 @@ TouchingTools touching_tools(const StampingSpec& spec, double thickness, double 
     const LoadedTool& loaded = *file->loaded;
     const ToolBandSpec band{.voxel = file->voxel,
                             .half_width = required_half_width(tool_step(spec), thickness, largest_increment)};
-    tools.notes.push_back(fmt::format("{}: {} triangles from {}{}{}", name_of(role), loaded.mesh.triangles.size(),
-                                      file->source.file.filename().string(), loaded.repairs.empty() ? "" : "; ",
-                                      loaded.repairs));
+    tools.notes.push_back(fmt::format("{}: {} triangles from {}{}{}", name_of(role),
+                                      loaded.mesh.triangles.size(), file->source.file.filename().string(),
+                                      loaded.repairs.empty() ? "" : "; ", loaded.repairs));
     return BandShape{std::make_shared<const ToolBand>(tool_band(loaded.mesh, band, key_of(role))),
                      Vector3d(0.0, 0.0, lift_to_touch(loaded.mesh, role))};
   };
@@ -244,14 +242,17 @@ Shape raised(Shape shape, double z) {
   return shape;
 }
 
-double flat_area(const Shape& binder, const Blank& blank) {
+double binder_area(const StampingSpec& spec) {
+  const Blank blank = make_blank(outline_of(spec.blank), spec.blank.spacing, spec.blank.orientation);
+  Solid binder(spec, Role::binder);
+  binder.prepare();
+  const double ring = spec.binder.inner_radius + spec.binder.edge_fillet, below = 1e-3;
   double area = 0.0;
-  const auto* ring = std::get_if<RingShape>(&binder);
-  const double below = 1e-3;
   for (int i = 0; i < blank.nodes(); ++i) {
     const Vector3d& x = blank.reference[i];
-    const bool under = ring ? x.head<2>().norm() >= ring->opening_radius + ring->fillet
-                            : std::abs(distance(binder, {x.x(), x.y(), -below}).distance - below) < flat_tolerance;
+    const bool under = binder.mesh()
+                           ? std::abs(binder.distance_to({x.x(), x.y(), -below}) - below) < flat_tolerance
+                           : x.head<2>().norm() >= ring;
     if (under) area += blank.node_area[i];
   }
   return area;

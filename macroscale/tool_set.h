@@ -1,9 +1,9 @@
 #pragma once
 
+#include <string>
 #include <vector>
 
 #include "core/problem.h"
-#include "macroscale/blank.h"
 #include "macroscale/stamping.h"
 #include "macroscale/tools.h"
 
@@ -19,8 +19,8 @@ StampingSpec with_tools_loaded(StampingSpec spec);
 /// @param thickness  of the stress-free fabric [m]
 Problems check_tools(const StampingSpec& spec, double thickness);
 
-/// Shapes of punch, die and binder, each moved along z so that it touches the plane z = 0: punch and binder from
-/// above, the die from below. Files become narrow bands.
+/// Shapes of punch, die and binder, each moved along z so that it touches the plane z = 0: punch and binder
+/// from above, the die from below. Files become narrow bands.
 struct TouchingTools {
   Shape punch, die, binder;
   std::vector<std::string> notes;  ///< what was read and repaired, for the report
@@ -33,7 +33,7 @@ TouchingTools touching_tools(const StampingSpec& spec, double thickness, double 
 /// The same shape moved up by z [m].
 Shape raised(Shape shape, double z);
 
-/// Area of the flat blank that lies under the flat face of a binder which touches z = 0 [m^2].
-double flat_area(const Shape& binder, const Blank& blank);
+/// Area of the flat blank that lies under the flat face of the binder: where it presses [m^2].
+double binder_area(const StampingSpec& spec);
 
 }  // namespace heddle::macroscale

@@ -30,6 +30,18 @@ void take(const Settings& settings, const std::string& path, std::string& value)
   if (settings.has(path)) value = settings.text(path);
 }
 
+template <std::size_t columns>
+std::vector<std::array<double, columns>> rows(const Settings& settings, const std::string& path) {
+  std::vector<std::array<double, columns>> result;
+  if (!settings.has(path)) return result;
+  const std::vector<double>& values = settings.many(path);
+  for (std::size_t k = 0; k + columns <= values.size(); k += columns) {
+    result.emplace_back();
+    std::copy_n(values.begin() + static_cast<std::ptrdiff_t>(k), columns, result.back().begin());
+  }
+  return result;
+}
+
 mesoscale::WeaveSpec weave_of(const Settings& settings, const std::string& block) {
   mesoscale::WeaveSpec weave;
   take(settings, block + ".pattern", weave.pattern);
@@ -189,7 +201,14 @@ std::optional<macroscale::ToolFileSpec> tool_file_of(const Settings& settings, c
 
 macroscale::StampingSpec stamping_of(const Settings& settings, const std::filesystem::path& folder) {
   macroscale::StampingSpec stamping;
+  stamping.blank.shape = settings.is("blank.shape", "circle")    ? macroscale::BlankShape::circle
+                         : settings.is("blank.shape", "polygon") ? macroscale::BlankShape::polygon
+                                                                 : macroscale::BlankShape::rectangle;
   take(settings, "blank.size", stamping.blank.size);
+  take(settings, "blank.radius", stamping.blank.radius);
+  for (const auto& point : rows<2>(settings, "blank.points")) stamping.blank.polygon.outer.push_back(point);
+  for (const auto& hole : rows<3>(settings, "blank.holes"))
+    stamping.blank.holes.push_back({{hole[0], hole[1]}, hole[2]});
   take(settings, "blank.orientation", stamping.blank.orientation);
   take(settings, "blank.spacing", stamping.blank.spacing);
   take(settings, "blank.plies", stamping.blank.plies);
@@ -219,6 +238,13 @@ Case case_of(const ReadConfig& config, const std::filesystem::path& folder) {
   if (runs(Stage::friction)) result.friction = friction_of(settings, folder);
   if (runs(Stage::friction_test)) result.friction_test = friction_test_of(settings, folder);
   if (runs(Stage::stamping)) result.stamping = stamping_of(settings, folder);
+  if (runs(Stage::orientation_study)) {
+    result.orientation_study.emplace();
+    if (settings.has("orientation_study.blanks"))
+      result.orientation_study->blanks = settings.many("orientation_study.blanks");
+    if (settings.has("orientation_study.friction"))
+      result.orientation_study->friction = settings.many("orientation_study.friction");
+  }
   result.notes = config.notes;
   result.settings = settings;
   return result;
@@ -430,6 +456,10 @@ std::vector<std::string> stage_lines(const Case& a_case) {
     lines.push_back(fmt::format("macroscale: stroke {} in {}, {} steps", write_quantity(process.stroke, "mm"),
                                 write_quantity(process.time / process.speed_scale, "s"), process.steps));
   }
+  if (a_case.orientation_study)
+    lines.push_back(fmt::format("orientation study: {} blanks, {} friction samples",
+                                a_case.orientation_study->blanks.size(),
+                                a_case.orientation_study->friction.size()));
   return lines;
 }
 

@@ -31,6 +31,12 @@ struct FrictionTestSpec {
   std::filesystem::path design;  ///< ranges of the parameters; may be empty
 };
 
+/// The same blank and the same friction sample cut at several angles to the tows.
+struct OrientationStudySpec {
+  std::vector<double> blanks;    ///< warp against x [rad]
+  std::vector<double> friction;  ///< warp against the pull [rad]
+};
+
 /// One configuration, typed and checked. Stages that the file does not ask for are absent.
 struct Case {
   std::string name;
@@ -38,6 +44,7 @@ struct Case {
   std::optional<FrictionSpec> friction;
   std::optional<FrictionTestSpec> friction_test;
   std::optional<macroscale::StampingSpec> stamping;
+  std::optional<OrientationStudySpec> orientation_study;  ///< runs the stamping once an angle
   std::vector<std::string> notes;  ///< keys not used, and values that are assumed
   Settings settings;               ///< every key behind the above
 };

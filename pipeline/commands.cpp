@@ -132,9 +132,9 @@ std::string description_of(const Case& a_case) {
   if (!a_case.stamping) return a_case.cell ? "One unit cell of the weave." : "The friction test.";
   const auto& s = *a_case.stamping;
   return fmt::format(
-      "A {:.0f} x {:.0f} mm blank of {} weave stamped {:.0f} mm deep into a hemisphere of {:.0f} mm radius "
+      "A {} blank of {} weave stamped {:.0f} mm deep into a hemisphere of {:.0f} mm radius "
       "in {:.2f} s.",
-      1e3 * s.blank.size[0], 1e3 * s.blank.size[1], a_case.cell->weave.pattern, 1e3 * s.process.stroke,
+      blank_in_words(s.blank), a_case.cell->weave.pattern, 1e3 * s.process.stroke,
       1e3 * s.punch.radius, s.process.time / s.process.speed_scale);
 }
 
@@ -146,8 +146,7 @@ std::vector<Condition> conditions_of(const Case& a_case) {
           {"Blank temperature", fmt::format("{:g} degC", s.process.blank_temperature - 273.15)},
           {"Stroke",
            fmt::format("{:g} mm in {:g} s", 1e3 * s.process.stroke, s.process.time / s.process.speed_scale)},
-          {"Blank", fmt::format("{:g} x {:g} mm, warp at {:g} deg", 1e3 * s.blank.size[0],
-                                1e3 * s.blank.size[1], degrees * s.blank.orientation)},
+          {"Blank", fmt::format("{}, warp at {:g} deg", blank_in_words(s.blank), degrees * s.blank.orientation)},
           {"Steps", fmt::format("{} of equal stroke", s.process.steps)}};
 }
 

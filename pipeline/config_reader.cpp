@@ -100,6 +100,10 @@ class ValueReader {
       refuse("value", "has no value", example());
     } else if (key_.type == KeyType::pair) {
       read_pair(setting);
+    } else if (key_.type == KeyType::list) {
+      read_list(setting, node_);
+    } else if (key_.type == KeyType::rows) {
+      read_rows(setting);
     } else if (node_.kind != ConfigNode::Kind::scalar) {
       refuse("value", "must be a single value", example());
     } else {
@@ -128,7 +132,9 @@ class ValueReader {
         setting.values[0] = read_number(node_);
         return;
       case KeyType::pair:
-        return;  // read_pair
+      case KeyType::list:
+      case KeyType::rows:
+        return;  // read_pair, read_list, read_rows
     }
   }
 
@@ -136,6 +142,22 @@ class ValueReader {
     const bool two = node_.kind == ConfigNode::Kind::list && node_.items.size() == 2;
     if (!two) return refuse("pair", "must be a list of two values", example());
     setting.values = {read_number(node_.items[0]), read_number(node_.items[1])};
+  }
+
+  void read_list(Setting& setting, const ConfigNode& node) {
+    if (node.kind != ConfigNode::Kind::list || node.items.empty())
+      return refuse("list", "must be a list of values", example());
+    for (const ConfigNode& item : node.items) setting.many.push_back(read_number(item));
+  }
+
+  void read_rows(Setting& setting) {
+    const auto columns = static_cast<std::size_t>(key_.columns);
+    const bool fits = node_.kind == ConfigNode::Kind::list && !node_.items.empty() &&
+                      std::all_of(node_.items.begin(), node_.items.end(), [&](const ConfigNode& row) {
+                        return row.kind == ConfigNode::Kind::list && row.items.size() == columns;
+                      });
+    if (!fits) return refuse("rows", fmt::format("must be a list of lists of {} values", columns), example());
+    for (const ConfigNode& row : node_.items) read_list(setting, row);
   }
 
   double read_number(const ConfigNode& node) {
@@ -202,6 +224,8 @@ class ValueReader {
       return fmt::format("For instance {}: {}", last_name(key_.path), key_.default_text);
     if (key_.type == KeyType::pair)
       return fmt::format("For instance {0}: [1 {1}, 2 {1}]", last_name(key_.path), key_.unit);
+    if (key_.type == KeyType::list)
+      return fmt::format("For instance {0}: [0 {1}, 45 {1}]", last_name(key_.path), key_.unit);
     if (!key_.choices.empty()) return "Known: " + join_words(key_.choices, ", ") + ".";
     return key_.help;
   }
@@ -279,6 +303,10 @@ class ConfigReader {
     std::set<Stage>& stages = config_.settings.stages;
     stages.insert(Stage::always);
     if (given("blank") || given("tools") || given("process")) stages.insert(Stage::stamping);
+    if (given("orientation_study")) {
+      stages.insert(Stage::orientation_study);
+      stages.insert(Stage::stamping);
+    }
     if (given("friction_test")) stages.insert(Stage::friction_test);
     if (given("friction") || stages.size() > 1) stages.insert(Stage::friction);
     const bool weave = given("weave") || given("cell") || given("fabric") || given("forming");
@@ -338,6 +366,8 @@ class ConfigReader {
         return " to stamp a part";
       case Stage::friction_test:
         return " by the friction test";
+      case Stage::orientation_study:
+        return " by the orientation study";
       case Stage::always:
         return "";
       case Stage::cell:
@@ -413,6 +443,14 @@ std::string quoted_where_needed(const std::string& text) {
   return quoted + "'";
 }
 
+std::string list_text(std::vector<double>::const_iterator begin, std::vector<double>::const_iterator end,
+                      const std::string& unit) {
+  std::string text;
+  for (auto value = begin; value != end; ++value)
+    text += (value == begin ? "" : ", ") + write_quantity(*value, unit);
+  return "[" + text + "]";
+}
+
 std::string resolved_value(const Setting& setting) {
   const Key& key = *setting.key;
   switch (key.type) {
@@ -430,6 +468,14 @@ std::string resolved_value(const Setting& setting) {
     case KeyType::pair:
       return fmt::format("[{}, {}]", write_quantity(setting.values[0], key.unit),
                          write_quantity(setting.values[1], key.unit));
+    case KeyType::list:
+      return list_text(setting.many.begin(), setting.many.end(), key.unit);
+    case KeyType::rows: {
+      std::string rows;
+      for (auto row = setting.many.begin(); row != setting.many.end(); row += key.columns)
+        rows += (rows.empty() ? "" : ", ") + list_text(row, row + key.columns, key.unit);
+      return "[" + rows + "]";
+    }
   }
   return "";
 }
@@ -479,6 +525,10 @@ int Settings::integer(const std::string& path) const {
 
 std::array<double, 2> Settings::pair(const std::string& path) const {
   return get(path).values;
+}
+
+const std::vector<double>& Settings::many(const std::string& path) const {
+  return get(path).many;
 }
 
 const std::string& Settings::text(const std::string& path) const {

@@ -19,7 +19,8 @@ struct Setting {
   std::string written;             ///< as the user or the schema wrote it: "0.75 mm"
   std::string text;                ///< of words, choices and files; of a quantity only when it is a choice
   std::array<double, 2> values{};  ///< of quantities and integers: the first; of pairs: both
-  std::string file;                ///< where it was written; "" = default
+  std::vector<double> many = {};   ///< of lists; of rows, one row after the other
+  std::string file = {};           ///< where it was written; "" = default
   int line = 0;
   std::filesystem::path folder = {};  ///< of the configuration: file keys are relative to it
   bool is_default() const { return file.empty(); }
@@ -36,6 +37,7 @@ class Settings {
   double number(const std::string& path) const;
   int integer(const std::string& path) const;
   std::array<double, 2> pair(const std::string& path) const;
+  const std::vector<double>& many(const std::string& path) const;
   const std::string& text(const std::string& path) const;
   bool is(const std::string& path, const std::string& choice) const {
     return has(path) && text(path) == choice;

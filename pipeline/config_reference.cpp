@@ -36,6 +36,13 @@ std::string value_column(const Key& key) {
       return "file";
     case KeyType::pair:
       return fmt::format("[{0}, {0}]", key.unit);
+    case KeyType::list:
+      return fmt::format("[{0}, ...]", key.unit);
+    case KeyType::rows: {
+      std::string row = key.unit;
+      for (int k = 1; k < key.columns; ++k) row += ", " + key.unit;
+      return fmt::format("[[{}], ...]", row);
+    }
     case KeyType::quantity:
     case KeyType::choice:
       break;

@@ -215,8 +215,21 @@ std::vector<Key> process_keys() {
 std::vector<Key> blank_and_tool_keys() {
   const auto stamping = Stage::stamping;
   return {
+      {.path = "blank.shape", .type = KeyType::choice, .presence = defaulted, .default_text = "rectangle",
+       .choices = {"rectangle", "circle", "polygon"}, .stage = stamping,
+       .help = "Outline of the blank; the grid follows the tows and is trimmed to it."},
       {.path = "blank.size", .type = KeyType::pair, .unit = "mm", .presence = required, .range = "(0 mm, 100000 mm)",
-       .stage = stamping, .help = "Along x and y."},
+       .stage = stamping, .used_when = "blank.shape=rectangle", .help = "Along x and y, centred on the punch axis."},
+      {.path = "blank.radius", .type = KeyType::quantity, .unit = "mm", .presence = required,
+       .range = "(0 mm, 100000 mm)", .stage = stamping, .used_when = "blank.shape=circle",
+       .help = "Of a round blank about the punch axis."},
+      {.path = "blank.points", .type = KeyType::rows, .unit = "mm", .presence = required,
+       .range = "[-100000 mm, 100000 mm]", .columns = 2, .stage = stamping, .used_when = "blank.shape=polygon",
+       .help = "Corners [x, y] in order along the edge, at least three, for instance "
+               "[[-160 mm, -160 mm], [160 mm, -160 mm], [0 mm, 200 mm]]."},
+      {.path = "blank.holes", .type = KeyType::rows, .unit = "mm", .presence = optional,
+       .range = "[-100000 mm, 100000 mm]", .columns = 3, .stage = stamping,
+       .help = "Round holes [x, y, radius], for instance [[0 mm, 120 mm, 8 mm]]."},
       {.path = "blank.orientation", .type = KeyType::quantity, .unit = "deg", .presence = defaulted,
        .default_text = "0 deg", .range = "[-180 deg, 180 deg]", .stage = stamping, .help = "Warp against x."},
       {.path = "blank.spacing", .type = KeyType::quantity, .unit = "mm", .presence = required,
@@ -297,6 +310,18 @@ std::vector<Key> effect_keys() {
   return keys;
 }
 
+std::vector<Key> study_keys() {
+  const auto study = Stage::orientation_study;
+  return {
+      {.path = "orientation_study.blanks", .type = KeyType::list, .unit = "deg", .presence = required,
+       .range = "[-180 deg, 180 deg]", .stage = study,
+       .help = "Warp of each blank to be stamped against x; takes the place of blank.orientation."},
+      {.path = "orientation_study.friction", .type = KeyType::list, .unit = "deg", .presence = required,
+       .range = "[-180 deg, 180 deg]", .stage = study,
+       .help = "Warp of each friction sample against its pull."},
+  };
+}
+
 std::vector<Key> artefact_keys() {
   return {
       {.path = "artefact.mass_scaling", .type = KeyType::quantity, .presence = defaulted, .default_text = "1",
@@ -320,6 +345,7 @@ std::vector<Key> all_keys() {
   for (const char* tool : {"punch", "die", "binder"}) append(keys, tool_file_keys(tool));
   append(keys, effect_keys());
   append(keys, artefact_keys());
+  append(keys, study_keys());
   return keys;
 }
 

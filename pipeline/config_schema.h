@@ -13,6 +13,8 @@ enum class KeyType {
   integer,   ///< whole number
   quantity,  ///< number with unit; or one of `choices` where there are any
   pair,      ///< two quantities in a list
+  list,      ///< any number of quantities in a list, at least one
+  rows,      ///< list of lists of `columns` quantities each
   file       ///< path of a file that exists, relative to the configuration file
 };
 
@@ -24,7 +26,7 @@ enum class Presence {
 };
 
 /// What a key is for: keys are asked for only if their stage runs.
-enum class Stage { always, cell, friction, friction_test, stamping };
+enum class Stage { always, cell, friction, friction_test, stamping, orientation_study };
 
 /// One key of the configuration. The table of these is the one source of validation, defaults and the
 /// reference page.
@@ -36,6 +38,7 @@ struct Key {
   std::string default_text = {};  ///< YAML text
   std::string range = {};         ///< interval with units, "(0 mm, 100 mm]"; "" = any
   std::vector<std::string> choices = {};
+  int columns = 0;  ///< of rows
   Stage stage = Stage::always;
   /// Conditions joined by blanks, all of which must hold for the key to be used: "friction.law=stribeck",
   /// "friction.calibration.data" (given), "!friction.calibration.data" (not given).

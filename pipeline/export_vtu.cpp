@@ -167,11 +167,63 @@ DataArray array_of(std::string name, const std::vector<std::array<double, N>>& v
 
 }  // namespace
 
+namespace {
+
+std::array<double, 4> weights_at(const macroscale::Point2& p) {
+  return {(1.0 - p[0]) * (1.0 - p[1]), p[0] * (1.0 - p[1]), p[0] * p[1], (1.0 - p[0]) * p[1]};
+}
+
+/// Quads that no outline cuts, then the pieces of the others on new points behind the nodes.
+void add_cells(QuadMesh& mesh, const macroscale::BlankState& blank) {
+  std::vector<char> cut(blank.quads.size(), 0);
+  for (const auto& piece : blank.pieces) cut.at(static_cast<std::size_t>(piece.quad)) = 1;
+  for (std::size_t q = 0; q < blank.quads.size(); ++q)
+    if (!cut[q]) mesh.quads.push_back(blank.quads[q]);
+  for (const auto& piece : blank.pieces) {
+    const int first = static_cast<int>(mesh.points.size());
+    for (const auto& corner : piece.corners)
+      mesh.points.push_back(position_in(blank, blank.quads[static_cast<std::size_t>(piece.quad)], corner));
+    mesh.quads.push_back({first, first + 1, first + 2, first + 3});
+  }
+}
+
+/// Values at the corners of the pieces, behind those at the nodes.
+void add_piece_values(DataArray& array, const macroscale::BlankState& blank) {
+  const auto components = static_cast<std::size_t>(array.components);
+  for (const auto& piece : blank.pieces) {
+    const auto& quad = blank.quads[static_cast<std::size_t>(piece.quad)];
+    for (const auto& corner : piece.corners) {
+      const auto weight = weights_at(corner);
+      for (std::size_t c = 0; c < components; ++c) {
+        double value = 0.0;
+        for (std::size_t k = 0; k < 4; ++k)
+          value += weight[k] * array.values[static_cast<std::size_t>(quad[k]) * components + c];
+        array.values.push_back(value);
+      }
+    }
+  }
+}
+
+}  // namespace
+
+std::array<double, 3> position_in(const macroscale::BlankState& blank, const std::array<int, 4>& quad,
+                                  const macroscale::Point2& local) {
+  const auto weight = weights_at(local);
+  std::array<double, 3> x{};
+  for (std::size_t k = 0; k < 4; ++k)
+    for (std::size_t c = 0; c < 3; ++c)
+      x[c] += weight[k] * blank.position[static_cast<std::size_t>(quad[k])][c];
+  return x;
+}
+
 QuadMesh mesh_of(const macroscale::BlankState& blank) {
-  QuadMesh mesh{blank.position, blank.quads, {}, {}};
+  QuadMesh mesh{blank.position, {}, {}, {}};
+  add_cells(mesh, blank);
   const auto add = [&](DataArray array) {
     // A quantity the run did not track is empty, and left out.
-    if (!array.values.empty()) mesh.point_data.push_back(std::move(array));
+    if (array.values.empty()) return;
+    add_piece_values(array, blank);
+    mesh.point_data.push_back(std::move(array));
   };
   DataArray angle{"shear_angle_deg", 1, blank.shear_angle};
   for (double& value : angle.values) value *= 180.0 / std::numbers::pi;

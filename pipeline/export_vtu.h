@@ -30,8 +30,12 @@ struct QuadMesh {
 /// @throws OutputError  if an array does not fit the mesh or a number is not finite; names the array
 std::string vtu(const QuadMesh& mesh, Precision precision = Precision::single_precision);
 
+/// A place in a cell, in the cell's own coordinates, on the formed blank [m]. Bilinear.
+std::array<double, 3> position_in(const macroscale::BlankState& blank, const std::array<int, 4>& quad,
+                                  const macroscale::Point2& local);
+
 /// What a picture of the blank needs: displaced nodes with shear angle, tow strains, velocity, contact and
-/// friction.
+/// friction. Cells that the outline cuts are there as their pieces, on points of their own.
 QuadMesh mesh_of(const macroscale::BlankState& blank);
 
 struct SeriesFrame {

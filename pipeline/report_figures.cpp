@@ -7,6 +7,8 @@
 #include <numbers>
 #include <stdexcept>
 
+#include "pipeline/export_vtu.h"
+
 namespace heddle::pipeline {
 
 namespace {
@@ -228,54 +230,134 @@ Canvas friction_chart(const std::vector<FrictionCurveRow>& rows, FrictionAbsciss
 
 namespace {
 
-/// Every so many-th grid line of a blank, the last one included.
-std::vector<int> thinned(int cells, int wanted) {
-  const int stride = std::max(1, (cells + wanted - 1) / wanted);
-  std::vector<int> lines;
-  for (int i = 0; i < cells; i += stride) lines.push_back(i);
-  lines.push_back(cells);
-  return lines;
-}
-
 void require_complete(const macroscale::BlankState& blank) {
-  const std::size_t nodes = static_cast<std::size_t>(blank.nu + 1) * static_cast<std::size_t>(blank.nv + 1);
-  if (blank.nu < 1 || blank.nv < 1 || blank.position.size() != nodes || blank.shear_angle.size() != nodes ||
-      blank.reference.size() != nodes) {
+  const std::size_t nodes = blank.position.size();
+  if (blank.nu < 1 || blank.nv < 1 || nodes == 0 || blank.grid.size() != nodes ||
+      blank.shear_angle.size() != nodes || blank.reference.size() != nodes) {
     throw std::invalid_argument(fmt::format(
-        "blank of {} x {} cells: {} positions, {} references and {} shear angles do not fit", blank.nu,
-        blank.nv, blank.position.size(), blank.reference.size(), blank.shear_angle.size()));
+        "blank of {} x {} cells: {} positions, {} grid places, {} references and {} shear angles do not fit",
+        blank.nu, blank.nv, blank.position.size(), blank.grid.size(), blank.reference.size(),
+        blank.shear_angle.size()));
   }
 }
 
-/// The blank coloured by the size of its shear angle, with some of its tows drawn as threads. Fine blanks are
-/// drawn with fewer quads: beyond this number they only make the file large.
+/// Builds the mesh of a picture: whole cells, blocks of them where the blank is fine, and the pieces of cells
+/// that the outline cuts.
+class PictureMesh {
+ public:
+  PictureMesh(const macroscale::BlankState& blank, MeshPicture& picture)
+      : blank_(blank), picture_(picture), point_of_(blank.position.size(), -1) {
+    node_at_.assign(static_cast<std::size_t>(blank.nu + 1) * static_cast<std::size_t>(blank.nv + 1), -1);
+    cell_.assign(static_cast<std::size_t>(blank.nu) * static_cast<std::size_t>(blank.nv), Cell::absent);
+    for (std::size_t n = 0; n < blank.grid.size(); ++n)
+      node_at_.at(line(blank.grid[n][0], blank.grid[n][1])) = static_cast<int>(n);
+    for (const auto& quad : blank.quads) cell_.at(cell_of(quad)) = Cell::whole;
+    for (const auto& piece : blank.pieces)
+      cell_.at(cell_of(blank.quads.at(static_cast<std::size_t>(piece.quad)))) = Cell::cut;
+  }
+
+  void build() {
+    // Beyond this number quads only make the file large.
+    constexpr int most_cells = 72, threads = 18;
+    const int stride_u = stride(blank_.nu, most_cells), stride_v = stride(blank_.nv, most_cells);
+    const int every_u = std::max(1, (blank_.nu / stride_u) / threads),
+              every_v = std::max(1, (blank_.nv / stride_v) / threads);
+    for (int i = 0; i < blank_.nu; i += stride_u)
+      for (int j = 0; j < blank_.nv; j += stride_v) {
+        const bool along_u = (j / stride_v) % every_v == every_v / 2,
+                   along_v = (i / stride_u) % every_u == every_u / 2;
+        const int i1 = std::min(i + stride_u, blank_.nu), j1 = std::min(j + stride_v, blank_.nv);
+        if (all_whole(i, i1, j, j1)) {
+          add_block(i, i1, j, j1, along_u, along_v);
+          continue;
+        }
+        for (int a = i; a < i1; ++a)
+          for (int b = j; b < j1; ++b)
+            if (cell_[cell(a, b)] == Cell::whole)
+              add_block(a, a + 1, b, b + 1, along_u && b == (j + j1 - 1) / 2,
+                        along_v && a == (i + i1 - 1) / 2);
+      }
+    for (const auto& piece : blank_.pieces) add_piece(piece);
+  }
+
+ private:
+  enum class Cell : char { absent, whole, cut };
+
+  static int stride(int cells, int most) { return std::max(1, (cells + most - 1) / most); }
+  std::size_t line(int i, int j) const { return static_cast<std::size_t>(i * (blank_.nv + 1) + j); }
+  std::size_t cell(int i, int j) const { return static_cast<std::size_t>(i * blank_.nv + j); }
+  std::size_t cell_of(const std::array<int, 4>& quad) const {
+    const auto [i, j] = blank_.grid.at(static_cast<std::size_t>(quad[0]));
+    return cell(i, j);
+  }
+  bool all_whole(int i0, int i1, int j0, int j1) const {
+    for (int i = i0; i < i1; ++i)
+      for (int j = j0; j < j1; ++j)
+        if (cell_[cell(i, j)] != Cell::whole) return false;
+    return true;
+  }
+
+  double angle_of(std::size_t node) const { return degrees * std::abs(blank_.shear_angle[node]); }
+
+  int point(int i, int j) {
+    const auto node = static_cast<std::size_t>(node_at_[line(i, j)]);
+    if (point_of_[node] < 0) {
+      point_of_[node] = static_cast<int>(picture_.points.size());
+      picture_.points.push_back(blank_.position[node]);
+      picture_.value.push_back(angle_of(node));
+    }
+    return point_of_[node];
+  }
+
+  void add_block(int i0, int i1, int j0, int j1, bool along_u, bool along_v) {
+    picture_.quads.push_back({point(i0, j0), point(i1, j0), point(i1, j1), point(i0, j1)});
+    picture_.threads.push_back(static_cast<std::uint8_t>((along_u ? 1 : 0) | (along_v ? 2 : 0)));
+  }
+
+  /// All in the colour of their cell.
+  void add_piece(const macroscale::CellPiece& piece) {
+    const auto& quad = blank_.quads[static_cast<std::size_t>(piece.quad)];
+    double value = 0.0;
+    for (const int node : quad) value += 0.25 * angle_of(static_cast<std::size_t>(node));
+    const int first = static_cast<int>(picture_.points.size());
+    for (const auto& corner : piece.corners) {
+      picture_.points.push_back(position_in(blank_, quad, corner));
+      picture_.value.push_back(value);
+    }
+    picture_.quads.push_back({first, first + 1, first + 2, first + 3});
+    picture_.threads.push_back(0);
+  }
+
+  const macroscale::BlankState& blank_;
+  MeshPicture& picture_;
+  std::vector<int> node_at_, point_of_;
+  std::vector<Cell> cell_;
+};
+
+/// The blank coloured by the size of its shear angle, with some of its tows drawn as threads.
 MeshPicture mesh_picture(const macroscale::BlankState& blank) {
   require_complete(blank);
-  constexpr int most_cells = 72, threads = 18;
-  const std::vector<int> u = thinned(blank.nu, most_cells), v = thinned(blank.nv, most_cells);
   MeshPicture picture;
-  for (const int i : u) {
-    for (const int j : v) {
-      const auto node = static_cast<std::size_t>(i * (blank.nv + 1) + j);
-      picture.points.push_back(blank.position[node]);
-      picture.value.push_back(degrees * std::abs(blank.shear_angle[node]));
-    }
-  }
-  const int cells_u = static_cast<int>(u.size()) - 1, cells_v = static_cast<int>(v.size()) - 1;
-  const int every_u = std::max(1, cells_u / threads), every_v = std::max(1, cells_v / threads);
-  for (int i = 0; i < cells_u; ++i) {
-    for (int j = 0; j < cells_v; ++j) {
-      const int first = i * (cells_v + 1) + j, next = first + cells_v + 1;
-      picture.quads.push_back({first, next, next + 1, first + 1});
-      const bool along_u = j % every_v == every_v / 2, along_v = i % every_u == every_u / 2;
-      picture.threads.push_back(static_cast<std::uint8_t>((along_u ? 1 : 0) | (along_v ? 2 : 0)));
-    }
-  }
+  PictureMesh(blank, picture).build();
   const double largest = *std::max_element(picture.value.begin(), picture.value.end());
   picture.colours = {0.0, largest > 0.0 ? largest : 1.0, "Shear angle", "°", ColourMap::angle};
   picture.width = half_width;
   picture.height = 450.0;
   return picture;
+}
+
+/// The edge of the flat blank and of its holes, closed.
+std::vector<std::vector<std::array<double, 3>>> flat_outlines(const macroscale::Outline& outline) {
+  std::vector<std::vector<std::array<double, 3>>> lines;
+  const auto add = [&](const std::vector<macroscale::Point2>& ring) {
+    if (ring.empty()) return;
+    lines.emplace_back();
+    for (const auto& p : ring) lines.back().push_back({p[0], p[1], 0.0});
+    lines.back().push_back({ring.front()[0], ring.front()[1], 0.0});
+  };
+  add(outline.outer);
+  for (const auto& hole : outline.holes) add(hole);
+  return lines;
 }
 
 }  // namespace
@@ -290,12 +372,7 @@ Canvas formed_picture(const macroscale::BlankState& blank) {
 Canvas top_picture(const macroscale::BlankState& blank) {
   MeshPicture picture = mesh_picture(blank);
   picture.label = "The formed blank from above, coloured by shear angle, with its first outline";
-  const std::size_t columns = static_cast<std::size_t>(blank.nv) + 1, last = blank.reference.size() - 1;
-  const std::array<std::size_t, 5> corners{0, last + 1 - columns, last, columns - 1, 0};
-  std::vector<std::array<double, 3>> outline;
-  for (const std::size_t node : corners)
-    outline.push_back({blank.reference[node][0], blank.reference[node][1], 0.0});
-  picture.outlines = {std::move(outline)};
+  picture.outlines = flat_outlines(blank.outline);
   return draw(picture);
 }
 

@@ -8,6 +8,7 @@
 
 #include "friction/hersey.h"
 #include "friction/test_design.h"
+#include "macroscale/tool_set.h"
 #include "mesoscale/cell.h"
 
 namespace heddle::pipeline {
@@ -186,10 +187,21 @@ WeavePictures weave_pictures(const mesoscale::CellSpec& spec) {
   return pictures;
 }
 
+std::string blank_in_words(const macroscale::BlankSpec& blank) {
+  switch (blank.shape) {
+    case macroscale::BlankShape::rectangle:
+      return fmt::format("{:g} x {:g} mm", 1e3 * blank.size[0], 1e3 * blank.size[1]);
+    case macroscale::BlankShape::circle:
+      return fmt::format("round {:g} mm", 2e3 * blank.radius);
+    case macroscale::BlankShape::polygon:
+      return fmt::format("{}-cornered {:.4g} cm2", blank.polygon.outer.size(),
+                         1e4 * macroscale::area(macroscale::outline_of(blank)));
+  }
+  return "";
+}
+
 double mean_binder_pressure(const macroscale::StampingSpec& spec) {
-  const double flat = spec.binder.inner_radius + spec.binder.edge_fillet;
-  const double area = spec.blank.size[0] * spec.blank.size[1] - std::numbers::pi * flat * flat;
-  return spec.process.binder_force / area;
+  return spec.process.binder_force / macroscale::binder_area(spec);
 }
 
 }  // namespace heddle::pipeline

@@ -42,6 +42,9 @@ struct WeavePictures {
 };
 WeavePictures weave_pictures(const mesoscale::CellSpec& spec);
 
+/// Size of a blank for titles: "320 x 320 mm", "round 300 mm".
+std::string blank_in_words(const macroscale::BlankSpec& blank);
+
 /// Mean binder pressure of a case: force over the blank outside the binder's opening [Pa].
 double mean_binder_pressure(const macroscale::StampingSpec& spec);
 

@@ -165,7 +165,7 @@ TEST_CASE("a stamping that cannot work is refused with every reason at once", "[
   const auto problems = check(spec);
   REQUIRE(problems.size() >= 3);
   for (const char* id : {"blank.size.reach", "process.steps.range", "tools.die.opening_radius.clearance",
-                         "blank.orientation.range", "blank.spacing.nodes", "process.punch.stroke.reach"})
+                         "blank.spacing.nodes", "process.punch.stroke.reach"})
     CHECK(std::any_of(problems.begin(), problems.end(), [&](const auto& p) { return p.id == id; }));
   CHECK(check(StampingSpec{}).empty());
   CHECK_THROWS_AS(run_stamping(spec, make_fabric({}), coulomb()), heddle::InputError);

@@ -28,6 +28,7 @@ inline macroscale::BlankState blank(int cells) {
           on_dome ? dome_radius * std::sin(arc / dome_radius) : dome_radius + arc - quarter_arc;
       const double z = on_dome ? -dome_radius * std::cos(arc / dome_radius) : 0.0;
       const double reach = arc / quarter_arc;
+      state.grid.push_back({i, j});
       state.reference.push_back({x, y});
       state.position.push_back({radius * std::cos(turn), radius * std::sin(turn), z});
       state.velocity.push_back({0.0, 0.0, 0.0});
@@ -46,6 +47,7 @@ inline macroscale::BlankState blank(int cells) {
       state.quads.push_back({first, next, next + 1, first + 1});
     }
   }
+  state.outline.outer = {{-0.16, -0.16}, {0.16, -0.16}, {0.16, 0.16}, {-0.16, 0.16}};
   state.time = 0.43;
   state.punch_displacement = 0.07;
   return state;
