@@ -5,12 +5,13 @@
 #include <limits>
 #include <utility>
 
+#include "macroscale/outline_cut.h"
+
 namespace heddle::macroscale {
 
 namespace {
 
 using Eigen::Vector2d;
-using Ring = std::vector<Point2>;
 
 // A share or a coordinate this close to a whole number is one: rounding must not cut a cell.
 constexpr double rounding = 1e-12;
@@ -91,22 +92,22 @@ Outline in_grid(const Outline& along_tows, const Blank& blank) {
   return result;
 }
 
-Cell cut_cell(const Outline& outline, int i, int j) {
+QuadCell unit_cell_at(int i, int j) {
   const double x = i, y = j;
+  return {{{x, y}, {x + 1, y}, {x + 1, y + 1}, {x, y + 1}}};
+}
+
+// @param share  exact area of the outline in the cell
+Cell cut_cell(const Outline& outline, int i, int j, double share) {
   Cell cell;
-  std::vector<Ring> rings = clipped(outline, {{{x, y}, {x + 1, y}, {x + 1, y + 1}, {x, y + 1}}});
-  if (rings.empty()) return cell;
+  if (share <= rounding) return cell;
+  // An edge that runs along the grid may miss it by rounding of its own coordinates.
+  cell.share = std::abs(share - 1.0) < rounding ? 1.0 : share;
+  if (cell.share == 1.0) return cell;
+  std::vector<Ring> rings = clipped(outline, unit_cell_at(i, j));
   for (Ring& ring : rings)
-    for (Point2& p : ring) p = {p[0] - x, p[1] - y};
-  Outline inside{rings.front(), {}};
-  inside.holes.assign(rings.begin() + 1, rings.end());
-  cell.share = area(inside);
-  if (std::abs(cell.share - 1.0) < rounding)
-    cell.share = 1.0;
-  else if (cell.share > rounding)
-    cell.pieces = trapezoids(rings);
-  else
-    cell.share = 0.0;
+    for (Point2& p : ring) p = {p[0] - i, p[1] - j};
+  cell.pieces = trapezoids(rings);
   return cell;
 }
 
@@ -114,8 +115,12 @@ class Trimming {
  public:
   Trimming(const Blank& blank, const Outline& along_tows) : nu_(blank.nu), nv_(blank.nv) {
     const Outline outline = in_grid(along_tows, blank);
+    std::vector<QuadCell> grid;
     for (int i = 0; i < nu_; ++i)
-      for (int j = 0; j < nv_; ++j) cells_.push_back(cut_cell(outline, i, j));
+      for (int j = 0; j < nv_; ++j) grid.push_back(unit_cell_at(i, j));
+    const std::vector<double> shares = clipped_areas(outline, grid);
+    for (int i = 0; i < nu_; ++i)
+      for (int j = 0; j < nv_; ++j) cells_.push_back(cut_cell(outline, i, j, shares[i * nv_ + j]));
     give_slivers_away();
   }
   const Cell& at(int i, int j) const { return cells_[i * nv_ + j]; }

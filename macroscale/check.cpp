@@ -4,6 +4,8 @@
 
 #include "macroscale/stamping.h"
 
+#include "macroscale/outline_cut.h"
+
 namespace heddle::macroscale {
 
 namespace {

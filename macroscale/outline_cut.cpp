@@ -1,26 +1,13 @@
-#include "macroscale/outline.h"
+#include "macroscale/outline_cut.h"
 
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 
 namespace heddle::macroscale {
 
 namespace {
 
-using Polygon = std::vector<Point2>;
-
-// Twice the signed area, seen from the first point: small polygons far from the origin keep their digits.
-double doubled_area(const Polygon& p) {
-  double sum = 0.0;
-  for (std::size_t k = 1; k + 1 < p.size(); ++k)
-    sum += (p[k][0] - p[0][0]) * (p[k + 1][1] - p[0][1]) - (p[k][1] - p[0][1]) * (p[k + 1][0] - p[0][0]);
-  return sum;
-}
-
-double size_of(const Polygon& p) {
-  return 0.5 * std::abs(doubled_area(p));
-}
+using Polygon = Ring;
 
 // What of the polygon lies to the left of the line from a to b.
 Polygon left_of(const Polygon& p, const Point2& a, const Point2& b) {
@@ -40,7 +27,7 @@ Polygon left_of(const Polygon& p, const Point2& a, const Point2& b) {
   return kept;
 }
 
-Polygon inside(Polygon p, const std::array<Point2, 4>& quad) {
+Polygon inside(Polygon p, const QuadCell& quad) {
   for (std::size_t k = 0; k < 4 && !p.empty(); ++k) p = left_of(p, quad[k], quad[(k + 1) % 4]);
   return p;
 }
@@ -61,32 +48,6 @@ bool holds_origin(const Polygon& p) {
 }
 
 }  // namespace
-
-Outline rectangle(Point2 size) {
-  const double x = 0.5 * size[0], y = 0.5 * size[1];
-  return {{{-x, -y}, {x, -y}, {x, y}, {-x, y}}, {}};
-}
-
-Outline circle(double radius, double chord_error, Point2 centre) {
-  const double half_turn = std::acos(std::clamp(1.0 - chord_error / radius, -1.0, 1.0));
-  const int eighth = std::max(1, static_cast<int>(std::ceil(std::numbers::pi / half_turn / 8.0)));
-  Outline outline;
-  for (int k = 0; k < 8 * eighth; ++k) {
-    // From the nearest axis, so that mirror images agree to the last bit.
-    const int quarter = (k + eighth) / (2 * eighth) % 4, rest = k - 2 * eighth * ((k + eighth) / (2 * eighth));
-    const double angle = 0.25 * std::numbers::pi * rest / eighth;
-    const double c = radius * std::cos(angle), s = radius * std::sin(angle);
-    const std::array<Point2, 4> images = {{{c, s}, {-s, c}, {-c, -s}, {s, -c}}};
-    outline.outer.push_back({centre[0] + images[quarter][0], centre[1] + images[quarter][1]});
-  }
-  return outline;
-}
-
-double area(const Outline& outline) {
-  double sum = size_of(outline.outer);
-  for (const auto& hole : outline.holes) sum -= size_of(hole);
-  return sum;
-}
 
 Outline turned(const Outline& outline, double c, double s) {
   Outline result = outline;
@@ -121,7 +82,7 @@ double ray_length(const Outline& outline, const Point2& direction) {
   return farthest;
 }
 
-std::vector<std::vector<Point2>> clipped(const Outline& outline, const std::array<Point2, 4>& quad) {
+std::vector<Ring> clipped(const Outline& outline, const QuadCell& quad) {
   std::vector<Polygon> parts{inside(outline.outer, quad)};
   if (parts.front().empty()) return {};
   for (const Polygon& hole : outline.holes) {
@@ -129,14 +90,6 @@ std::vector<std::vector<Point2>> clipped(const Outline& outline, const std::arra
     if (!part.empty()) parts.push_back(std::move(part));
   }
   return parts;
-}
-
-double clipped_area(const Outline& outline, const std::array<Point2, 4>& quad) {
-  std::vector<Polygon> parts = clipped(outline, quad);
-  if (parts.empty()) return 0.0;
-  Outline inside_quad{std::move(parts.front()), {}};
-  inside_quad.holes.assign(parts.begin() + 1, parts.end());
-  return area(inside_quad);
 }
 
 }  // namespace heddle::macroscale

@@ -5,6 +5,8 @@
 #include <functional>
 #include <numbers>
 
+#include "macroscale/outline_cut.h"
+
 namespace heddle::macroscale {
 
 namespace {

@@ -1,0 +1,10 @@
+# Debian's gmsh ships no CMake package. As needed: loading it (OpenCASCADE, FLTK) takes a tenth of a second, which a
+# test program that reads no CAD file should not spend.
+find_path(GMSH_INCLUDE_DIR gmsh.h)
+find_library(GMSH_LIBRARY gmsh)
+if(NOT GMSH_INCLUDE_DIR OR NOT GMSH_LIBRARY)
+  message(FATAL_ERROR "gmsh not found. Install libgmsh-dev.")
+endif()
+add_library(heddle_gmsh INTERFACE)
+target_include_directories(heddle_gmsh SYSTEM INTERFACE ${GMSH_INCLUDE_DIR})
+target_link_libraries(heddle_gmsh INTERFACE -Wl,--as-needed ${GMSH_LIBRARY} -Wl,--no-as-needed)
