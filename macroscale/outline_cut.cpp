@@ -76,8 +76,8 @@ double ray_length(const Outline& outline, const Point2& direction) {
                  left_b = direction[0] * b[1] - direction[1] * b[0];
     if ((left_a > 0.0) == (left_b > 0.0)) continue;
     const double t = left_a / (left_a - left_b);
-    farthest = std::max(farthest, direction[0] * (a[0] + t * (b[0] - a[0])) +
-                                      direction[1] * (a[1] + t * (b[1] - a[1])));
+    farthest = std::max(
+        farthest, direction[0] * (a[0] + t * (b[0] - a[0])) + direction[1] * (a[1] + t * (b[1] - a[1])));
   }
   return farthest;
 }

@@ -8,6 +8,7 @@
 #include "core/text_file.h"
 #include "core/units.h"
 #include "friction/calibrate.h"
+#include "macroscale/tool_set.h"
 #include "pipeline/outputs.h"
 
 namespace heddle::pipeline {
@@ -359,6 +360,7 @@ Problems check_friction(const FrictionSpec& spec, const Settings& settings) {
 /// The fabric passes between punch and die.
 Problems check_clearance(const mesoscale::CellSpec& cell, const macroscale::StampingSpec& stamping) {
   constexpr double rounding = 1e-9;  // [m]: lets 71.5 mm - 70 mm hold a fabric of 1.5 mm
+  if (stamping.die.file || stamping.punch.file) return {};  // measured on their surfaces
   const double clearance = stamping.die.opening_radius - stamping.punch.radius;
   const double thickness = cell.weave.fabric_thickness;
   if (clearance <= 0.0 || clearance >= thickness - rounding) return {};  // <= 0: said by the room itself
@@ -390,6 +392,17 @@ Problems check_between_keys(const Case& a_case, const Problems& known) {
 }
 
 constexpr double melting_range_of_polypropylene = 433.15;  // its lower end [K]; recalled
+
+/// Reads the tools that files give and measures them against each other, the fabric and the blank.
+Problems load_tools(Case& a_case) {
+  if (!a_case.stamping) return {};
+  try {
+    a_case.stamping = macroscale::with_tools_loaded(*a_case.stamping);
+  } catch (const InputError& error) {
+    return error.problems();
+  }
+  return macroscale::check_tools(*a_case.stamping, a_case.cell->weave.fabric_thickness);
+}
 
 /// Values no source of ours measures, said wherever the case is shown.
 void note_assumptions(Case& a_case) {
@@ -427,20 +440,26 @@ std::string friction_line(const FrictionSpec& friction) {
 }  // namespace
 
 Case read_case_text(const std::string& text, const std::string& file, const std::filesystem::path& folder,
-                    const std::vector<std::string>& assignments) {
+                    const std::vector<std::string>& assignments, ToolFiles tools) {
   ReadConfig config = read_config(text, file, folder, assignments);
   Case result = case_of(config, folder);
   Problems between = check_between_keys(result, config.problems);
   locate(between, config);
   append(config.problems, std::move(between));
+  if (config.problems.empty() && tools == ToolFiles::load) {
+    between = load_tools(result);
+    locate(between, config);
+    append(config.problems, std::move(between));
+  }
   sort_by_place(config.problems, file);
   if (!config.problems.empty()) throw InputError(config.problems);
   note_assumptions(result);
   return result;
 }
 
-Case read_case(const std::filesystem::path& file, const std::vector<std::string>& assignments) {
-  return read_case_text(read_text_file(file), file.string(), file.parent_path(), assignments);
+Case read_case(const std::filesystem::path& file, const std::vector<std::string>& assignments,
+               ToolFiles tools) {
+  return read_case_text(read_text_file(file), file.string(), file.parent_path(), assignments, tools);
 }
 
 std::vector<std::string> stage_lines(const Case& a_case) {

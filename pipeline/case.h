@@ -45,17 +45,22 @@ struct Case {
   std::optional<FrictionTestSpec> friction_test;
   std::optional<macroscale::StampingSpec> stamping;
   std::optional<OrientationStudySpec> orientation_study;  ///< runs the stamping once an angle
-  std::vector<std::string> notes;  ///< keys not used, and values that are assumed
-  Settings settings;               ///< every key behind the above
+  std::vector<std::string> notes;                         ///< keys not used, and values that are assumed
+  Settings settings;                                      ///< every key behind the above
 };
 
-/// Reads a configuration file with --set applied, checks every key and the keys against each other.
-/// @throws InputError  with every problem of the file
-Case read_case(const std::filesystem::path& file, const std::vector<std::string>& assignments = {});
+/// Tool files take seconds to read and check: commands that stamp nothing leave them.
+enum class ToolFiles { load, leave };
+
+/// Reads a configuration file with --set applied, checks every key, the keys against each other and the tools
+/// that files give.
+/// @throws InputError  with every problem of the file; those of tool files once the rest is sound
+Case read_case(const std::filesystem::path& file, const std::vector<std::string>& assignments = {},
+               ToolFiles tools = ToolFiles::load);
 
 /// The same for text. @param folder  against which file keys are resolved
 Case read_case_text(const std::string& text, const std::string& file, const std::filesystem::path& folder,
-                    const std::vector<std::string>& assignments = {});
+                    const std::vector<std::string>& assignments = {}, ToolFiles tools = ToolFiles::load);
 
 /// What `heddle run` would do, one line a stage.
 std::vector<std::string> stage_lines(const Case& a_case);
