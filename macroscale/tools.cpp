@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "macroscale/tool_band.h"
+
 namespace heddle::macroscale {
 
 namespace {
@@ -69,6 +71,10 @@ Distance evaluate(const RingShape& ring, const Vector3d& x) {
   const Vector3d flip(1.0, 1.0, -1.0);
   d.curvature = flip.asDiagonal() * d.curvature * flip.asDiagonal();
   return d;
+}
+
+Distance evaluate(const BandShape& tool, const Vector3d& x) {
+  return evaluate(*tool.band, Vector3d(x - tool.offset));
 }
 
 }  // namespace

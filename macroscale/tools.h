@@ -1,5 +1,6 @@
 #pragma once
 
+#include <memory>
 #include <string>
 #include <variant>
 
@@ -42,7 +43,16 @@ struct RingShape {
   bool up = true;
 };
 
-using Shape = std::variant<PlaneShape, CylinderShape, HemisphereShape, RingShape>;
+class ToolBand;
+
+/// A tool from a file: the narrow band about its surface (macroscale/tool_band.h, which says what holds beyond
+/// the band). Its normal is the gradient of an interpolated distance, of length 1 up to the interpolation error.
+struct BandShape {
+  std::shared_ptr<const ToolBand> band;
+  Eigen::Vector3d offset = Eigen::Vector3d::Zero();  ///< where the file's origin stands [m]
+};
+
+using Shape = std::variant<PlaneShape, CylinderShape, HemisphereShape, RingShape, BandShape>;
 
 Distance distance(const Shape& shape, const Eigen::Vector3d& x);
 

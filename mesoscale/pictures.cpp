@@ -12,7 +12,7 @@ class TubeBuilder {
   TubeBuilder(const UnitCell& cell, TowDirection direction, int index, int stations, int across)
       : cell_(cell), direction_(direction), index_(index), stations_(stations), across_(across) {}
 
-  void append_to(TriMesh& mesh) const {
+  void append_to(TriangleMesh& mesh) const {
     const int first = static_cast<int>(mesh.vertices.size());
     for (int s = 0; s <= stations_; ++s)
       for (int k = 0; k < ring(); ++k) mesh.vertices.push_back(vertex(s, k));
@@ -45,12 +45,12 @@ class TubeBuilder {
   }
 
   // Weft runs along eta and is wide along xi: the opposite hand of warp.
-  void add(TriMesh& mesh, std::array<int, 3> triangle) const {
+  void add(TriangleMesh& mesh, std::array<int, 3> triangle) const {
     if (is_warp()) std::swap(triangle[1], triangle[2]);
     mesh.triangles.push_back(triangle);
   }
 
-  void add_cap(TriMesh& mesh, int start, bool at_end) const {
+  void add_cap(TriangleMesh& mesh, int start, bool at_end) const {
     const auto face = [&](int a, int b, int c) {
       if (at_end) std::swap(b, c);
       add(mesh, {start + a, start + b, start + c});
@@ -66,13 +66,6 @@ class TubeBuilder {
   TowDirection direction_;
   int index_, stations_, across_;
 };
-
-double tetrahedron(const std::array<double, 3>& a, const std::array<double, 3>& b,
-                   const std::array<double, 3>& c) {
-  return (a[0] * (b[1] * c[2] - b[2] * c[1]) + a[1] * (b[2] * c[0] - b[0] * c[2]) +
-          a[2] * (b[0] * c[1] - b[1] * c[0])) /
-         6.0;
-}
 
 Outline warp_band(const UnitCell& cell, int warp, int points_per_pitch) {
   Outline band{TowDirection::warp, {}};
@@ -104,15 +97,6 @@ Outline weft_section(const UnitCell& cell, int warp, int weft, int points_per_pi
 
 }  // namespace
 
-double volume(const TriMesh& mesh) {
-  double sum = 0.0;
-  for (const std::array<int, 3>& t : mesh.triangles)
-    sum += tetrahedron(mesh.vertices[static_cast<std::size_t>(t[0])],
-                       mesh.vertices[static_cast<std::size_t>(t[1])],
-                       mesh.vertices[static_cast<std::size_t>(t[2])]);
-  return sum;
-}
-
 VoxelLabels tow_labels(const UnitCell& cell, int per_pitch, int through) {
   VoxelLabels voxels;
   const int warps = cell.weave.warps;
@@ -141,8 +125,8 @@ VoxelLabels tow_labels(const UnitCell& cell, int per_pitch, int through) {
   return voxels;
 }
 
-TriMesh tow_surfaces(const UnitCell& cell, int along, int across) {
-  TriMesh mesh;
+TriangleMesh tow_surfaces(const UnitCell& cell, int along, int across) {
+  TriangleMesh mesh;
   for (int i = 0; i < cell.weave.warps; ++i)
     TubeBuilder(cell, TowDirection::warp, i, along * cell.weave.wefts, across).append_to(mesh);
   for (int j = 0; j < cell.weave.wefts; ++j)

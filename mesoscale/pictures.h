@@ -4,24 +4,19 @@
 #include <cstdint>
 #include <vector>
 
+#include "core/triangle_mesh.h"
 #include "mesoscale/cell.h"
 
 namespace heddle::mesoscale {
 
-/// Triangles with shared vertices, outward normals (counter-clockwise seen from outside). [m]
-struct TriMesh {
-  std::vector<std::array<double, 3>> vertices;
-  std::vector<std::array<int, 3>> triangles;
-};
-
-/// Signed volume by the divergence theorem; that of the bodies where the surfaces are closed [m^3].
-double volume(const TriMesh& mesh);
+/// The name of the stages that write pictures.
+using TriMesh = TriangleMesh;
 
 /// Surfaces of all tows of one repeat, each closed, in the sheared fabric plane: sections are swept along the
 /// path and flat at the ends of the repeat.
 /// @param along   stations per pitch
 /// @param across  strips over the tow width
-TriMesh tow_surfaces(const UnitCell& cell, int along = 24, int across = 16);
+TriangleMesh tow_surfaces(const UnitCell& cell, int along = 24, int across = 16);
 
 /// Which tow fills each voxel of one repeat, sampled at the voxel's middle: 0 = none (resin or air), 1 to
 /// `warps` the warps, then the wefts. x fastest. Lengths in the parameter plane, which is the fabric's own

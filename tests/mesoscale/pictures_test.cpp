@@ -14,7 +14,7 @@ using heddle::test::radians;
 using heddle::test::table1;
 
 TEST_CASE("tow surfaces are closed: every edge is run once each way", "[pictures]") {
-  const TriMesh mesh = tow_surfaces(unit_cell(table1(), radians(25.0)), 8, 6);
+  const heddle::TriangleMesh mesh = tow_surfaces(unit_cell(table1(), radians(25.0)), 8, 6);
   std::map<std::pair<int, int>, int> edges;
   for (const auto& t : mesh.triangles)
     for (std::size_t k = 0; k < 3; ++k) ++edges[{t[k], t[(k + 1) % 3]}];

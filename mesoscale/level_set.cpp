@@ -1,0 +1,326 @@
+#include "mesoscale/level_set.h"
+
+#include <fmt/format.h>
+
+#include <Eigen/Dense>
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numbers>
+
+#include "core/problem.h"
+
+namespace heddle::mesoscale {
+
+namespace {
+
+using Eigen::Matrix2d;
+using Eigen::Vector2d;
+using Eigen::Vector3d;
+
+// Value and two derivatives of a function of one number.
+struct Jet {
+  double f, d, dd;
+};
+
+// Where a place is in the tow's own directions.
+struct Local {
+  double along, across;
+};
+
+// Height of a tow's middle along it, with two derivatives.
+class Centreline {
+ public:
+  Centreline(const UnitCell& cell, const TowPiece& tow) : cell_(cell), tow_(tow), half_(0.5 * cell.crimp_height()) {
+    if (const auto* arc = std::get_if<ArcPath>(&cell.path)) {
+      radius_ = arc->radius;
+      wrap_ = arc->wrap();
+      steepest_ = std::tan(arc->angle);
+    } else {
+      steepest_ = std::tan(std::get<SinePath>(cell.path).angle());
+    }
+  }
+
+  double steepest() const { return steepest_; }
+
+  Jet at(double along) const {
+    const double crossing = std::floor(along / cell_.pitch), from = along - crossing * cell_.pitch;
+    const bool first = above(static_cast<int>(crossing)), second = above(static_cast<int>(crossing) + 1);
+    if (first == second) return {first ? half_ : -half_, 0.0, 0.0};
+    const Jet drop = radius_ > 0.0 ? arc_drop(from) : sine_drop(from);
+    const double sign = first ? 1.0 : -1.0;
+    return {sign * (half_ - drop.f), -sign * drop.d, -sign * drop.dd};
+  }
+
+ private:
+  bool above(int crossing) const {
+    return tow_.direction == TowDirection::warp ? cell_.weave.warp_over(tow_.index, crossing)
+                                                : !cell_.weave.warp_over(crossing, tow_.index);
+  }
+  // ArcPath::drop and SinePath::drop with their derivatives, without asking for the same angle again and again.
+  Jet arc_drop(double u) const {
+    if (u > 0.5 * cell_.pitch) {
+      const Jet mirrored = arc_drop(cell_.pitch - u);
+      return {2.0 * half_ - mirrored.f, mirrored.d, -mirrored.dd};
+    }
+    const double v = std::min(u, wrap_), root = std::sqrt(radius_ * radius_ - v * v);
+    const double on_arc = v * v / (radius_ + root);
+    if (u > wrap_) return {on_arc + (u - wrap_) * steepest_, steepest_, 0.0};
+    return {on_arc, u / root, radius_ * radius_ / (root * root * root)};
+  }
+  Jet sine_drop(double u) const {
+    const double k = std::numbers::pi / cell_.pitch;
+    return {half_ * (1.0 - std::cos(k * u)), half_ * k * std::sin(k * u), half_ * k * k * std::cos(k * u)};
+  }
+
+  const UnitCell& cell_;
+  TowPiece tow_;
+  double half_, radius_ = 0.0, wrap_ = 0.0, steepest_ = 0.0;
+};
+
+// Half a section's outline by a parameter v in which it is smooth up to the edges.
+struct Profile {
+  Jet across, height;
+};
+
+// The lens by the place across it.
+class LensOutline {
+ public:
+  explicit LensOutline(const LensSection& lens)
+      : half_width_(0.5 * lens.width), half_thickness_(0.5 * lens.thickness), radius_(lens.radius()) {}
+
+  double half_width() const { return half_width_; }
+  double edge() const { return half_width_; }
+  double above(double across) const { return std::clamp(across, -half_width_, half_width_); }
+  double steepest() const { return half_width_ / std::sqrt(radius_ * radius_ - half_width_ * half_width_); }
+  double half_height(double across) const { return std::abs(across) < half_width_ ? at(across).height.f : 0.0; }
+  Profile at(double v) const {
+    const double root = std::sqrt(radius_ * radius_ - v * v);
+    return {{v, 1.0, 0.0},
+            {half_thickness_ - v * v / (radius_ + root), -v / root, -radius_ * radius_ / (root * root * root)}};
+  }
+
+ private:
+  double half_width_, half_thickness_, radius_;
+};
+
+// The ellipse by its angle from the crown.
+class EllipseOutline {
+ public:
+  explicit EllipseOutline(const EllipseSection& ellipse) : a_(0.5 * ellipse.width), b_(0.5 * ellipse.thickness) {}
+
+  double half_width() const { return a_; }
+  double edge() const { return 0.5 * std::numbers::pi; }
+  double above(double across) const { return std::asin(std::clamp(across / a_, -1.0, 1.0)); }
+  double steepest() const { return std::numeric_limits<double>::infinity(); }
+  double half_height(double across) const { return b_ * std::sqrt(std::max(1.0 - across * across / (a_ * a_), 0.0)); }
+  Profile at(double v) const {
+    const double s = std::sin(v), c = std::cos(v);
+    return {{a_ * s, a_ * c, -a_ * s}, {b_ * c, -b_ * s, -b_ * c}};
+  }
+
+ private:
+  double a_, b_;
+};
+
+LensOutline outline(const LensSection& lens) {
+  return LensOutline(lens);
+}
+EllipseOutline outline(const EllipseSection& ellipse) {
+  return EllipseOutline(ellipse);
+}
+
+// Surface of one tow piece: two faces S(u, v), by u along the tow and v across it, and two cuts.
+template <class SectionOutline>
+class TowSurface {
+ public:
+  TowSurface(const UnitCell& cell, const TowPiece& tow, const SectionOutline& section)
+      : centre_(cell, tow), section_(section), pitch_(cell.pitch), middle_(tow.index * cell.pitch),
+        warp_(tow.direction == TowDirection::warp), sin_(std::sin(cell.shear_angle)), cos_(std::cos(cell.shear_angle)) {
+    along_ = {1.0, 0.0, 0.0};
+    across_ = {sin_, cos_, 0.0};
+    if (!warp_) std::swap(along_, across_);
+    const int crossings = warp_ ? cell.weave.wefts : cell.weave.warps;
+    low_ = {-0.5 * pitch_, -section.edge()};
+    high_ = {(crossings - 0.5) * pitch_, section.edge()};
+    slope_ = (section.steepest() + centre_.steepest()) / cos_;
+  }
+
+  double distance(const Vector3d& q) const {
+    const double eta = q.y() / cos_, xi = q.x() - eta * sin_;
+    const Local at = warp_ ? Local{xi, eta - middle_} : Local{eta, xi - middle_};
+    const double height = q.z() - centre_.at(std::clamp(at.along, low_[0], high_[0])).f;
+    double nearest = face_distance(q, at, height);
+    // The cuts run along the other tow direction, at cos g of the way; their rims belong to the faces.
+    for (const double cut : {low_[0], high_[0]}) {
+      const double away = (at.along - cut) * cos_;
+      const double foot = at.across + (at.along - cut) * sin_;
+      if (std::abs(q.z() - centre_.at(cut).f) < section_.half_height(foot))
+        nearest = std::min(nearest, std::abs(away));
+    }
+    const bool inside = at.along > low_[0] && at.along < high_[0] && std::abs(height) < section_.half_height(at.across);
+    return inside ? -nearest : nearest;
+  }
+
+ private:
+  struct Value {
+    double energy;      // half the square of the distance
+    Vector2d slope;     // in u and v
+    Matrix2d tangents;  // S_a . S_b
+    Matrix2d bend;      // r . S_ab
+  };
+
+  // The face on the point's own side of the middle is the nearer one, unless the section is thin or steep there:
+  // the other is no nearer than the gap to it in z over sqrt(1 + slope^2).
+  double face_distance(const Vector3d& q, const Local& at, double height) const {
+    const double side = height >= 0.0 ? 1.0 : -1.0;
+    const double near = foot_distance(q, at, side);
+    const bool over_the_tow =
+        at.along > low_[0] && at.along < high_[0] && std::abs(at.across) < section_.half_width();
+    const double gap = std::abs(height) + section_.half_height(at.across);
+    if (over_the_tow && gap > near * std::sqrt(1.0 + slope_ * slope_)) return near;
+    return std::min(near, foot_distance(q, at, -side));
+  }
+
+  double foot_distance(const Vector3d& q, const Local& start, double side) const {
+    Vector2d at = Vector2d(start.along, section_.above(start.across)).cwiseMax(low_).cwiseMin(high_);
+    Value now = value(q, at, side);
+    double damping = 0.0;
+    for (int k = 0; k < 60; ++k) {
+      const Vector2d next = step(now, at, damping), moved = next - at;
+      // In place, not in parameters. The distance is wrong by the square of what is left, over itself.
+      if (moved.dot(now.tangents * moved) < 1e-12 * pitch_ * pitch_) break;
+      const Value then = value(q, next, side);
+      if (then.energy <= now.energy) {
+        at = next;
+        now = then;
+        damping *= 0.1;
+        if (damping < 1e-3) damping = 0.0;
+      } else {
+        damping = std::max(10.0 * damping, 0.1);
+        if (damping > 1e6) break;  // no lower place in any neighbourhood that rounding can tell
+      }
+    }
+    return std::sqrt(2.0 * now.energy);
+  }
+
+  Value value(const Vector3d& q, const Vector2d& at, double side) const {
+    const Jet path = centre_.at(at[0]);
+    const Profile p = section_.at(at[1]);
+    const Vector3d up = Vector3d::UnitZ();
+    const Vector3d s = at[0] * along_ + (middle_ + p.across.f) * across_ + (path.f + side * p.height.f) * up;
+    const Vector3d su = along_ + path.d * up, sv = p.across.d * across_ + side * p.height.d * up;
+    const Vector3d svv = p.across.dd * across_ + side * p.height.dd * up;
+    const Vector3d r = s - q;
+    Value result;
+    result.energy = 0.5 * r.squaredNorm();
+    result.slope = {r.dot(su), r.dot(sv)};
+    result.tangents << su.squaredNorm(), su.dot(sv), su.dot(sv), sv.squaredNorm();
+    result.bend << r.z() * path.dd, 0.0, 0.0, r.dot(svv);
+    return result;
+  }
+
+  // Newton's step, damped, on the rectangle of the parameters: one that leaves it stops at its edge and the other
+  // parameter is solved alone.
+  Vector2d step(const Value& now, const Vector2d& at, double damping) const {
+    Matrix2d h = now.tangents + now.bend;
+    if (!(h(0, 0) > 0.0 && h(1, 1) > 0.0 && h.determinant() > 1e-6 * h(0, 0) * h(1, 1))) h = now.tangents;
+    h.diagonal() += damping * now.tangents.diagonal();
+    Vector2d next = at - h.inverse() * now.slope;
+    for (int c = 0; c < 2; ++c) {
+      const double held = std::clamp(next[c], low_[c], high_[c]);
+      if (held == next[c]) continue;
+      const int other = 1 - c;
+      Vector2d result;
+      result[c] = held;
+      result[other] = std::clamp(at[other] - (now.slope[other] + h(0, 1) * (held - at[c])) / h(other, other),
+                                 low_[other], high_[other]);
+      return result;
+    }
+    return next;
+  }
+
+  Centreline centre_;
+  SectionOutline section_;
+  double pitch_, middle_;
+  bool warp_;
+  double sin_, cos_, slope_ = 0.0;
+  Vector3d along_, across_;
+  Vector2d low_, high_;
+};
+
+// Calls use(surface) with the surface of a tow piece, whatever its section.
+template <class Use>
+auto with_surface(const UnitCell& cell, const TowPiece& tow, const Use& use) {
+  return std::visit([&](const auto& section) { return use(TowSurface(cell, tow, outline(section))); }, cell.section);
+}
+
+int crossings(const UnitCell& cell, const TowPiece& tow) {
+  return tow.direction == TowDirection::warp ? cell.weave.wefts : cell.weave.warps;
+}
+
+}  // namespace
+
+std::vector<TowPiece> tow_pieces(const UnitCell& cell) {
+  std::vector<TowPiece> tows;
+  for (int i = 0; i < cell.weave.warps; ++i) tows.push_back({TowDirection::warp, i});
+  for (int j = 0; j < cell.weave.wefts; ++j) tows.push_back({TowDirection::weft, j});
+  return tows;
+}
+
+double tow_distance(const UnitCell& cell, const TowPiece& tow, const std::array<double, 3>& place) {
+  return with_surface(cell, tow,
+                      [&](const auto& surface) { return surface.distance({place[0], place[1], place[2]}); });
+}
+
+LevelSet tow_level_set(const UnitCell& cell, const TowPiece& tow, double voxel, double half_width_voxels) {
+  const double thickness = 2.0 * half_height(cell.section, 0.0);
+  if (!(voxel > 0.0) || voxel > 0.2 * thickness)
+    throw InputError({{"level_set.voxel.range", "voxel", fmt::format("{} mm", 1e3 * voxel),
+                       fmt::format("must satisfy 0 < voxel <= a fifth of the tow thickness, {} mm", 0.2e3 * thickness),
+                       "Write 0.05 mm for the tow of Table 1."}});
+  const double start = -0.5 * cell.pitch, end = start + crossings(cell, tow) * cell.pitch;
+  const double side = 0.5 * width(cell.section), middle = tow.index * cell.pitch;
+  const double top = 0.5 * (cell.crimp_height() + thickness);
+  Box box{{1e300, 1e300, -top}, {-1e300, -1e300, top}};
+  for (const double along : {start, end})
+    for (const double across : {middle - side, middle + side}) {
+      const auto corner =
+          tow.direction == TowDirection::warp ? cell.place(along, across) : cell.place(across, along);
+      for (std::size_t c = 0; c < 2; ++c) {
+        box.low[c] = std::min(box.low[c], corner[c]);
+        box.high[c] = std::max(box.high[c], corner[c]);
+      }
+    }
+  return with_surface(cell, tow, [&](const auto& surface) {
+    return level_set_from_distance([&](double x, double y, double z) { return surface.distance({x, y, z}); }, box,
+                                   voxel, half_width_voxels);
+  });
+}
+
+LevelSetCheck level_set_check(const UnitCell& cell, double voxel) {
+  LevelSetCheck check;
+  check.voxel = voxel;
+  check.tows = tow_pieces(cell);
+  const double one_pitch = area(cell.section) * cell.pitch * std::cos(cell.shear_angle);
+  check.closed_form_volume = one_pitch * cell.weave.wefts;
+  std::vector<LevelSet> sets;
+  for (const TowPiece& tow : check.tows) {
+    sets.push_back(tow_level_set(cell, tow, voxel));
+    check.tow_volume.push_back(volume(sets.back()));
+    check.closed_form_total += one_pitch * crossings(cell, tow);
+    check.memory += sets.back().memory();
+  }
+  check.largest_depth = -std::numeric_limits<double>::infinity();
+  const std::size_t warps = static_cast<std::size_t>(cell.weave.warps);
+  for (std::size_t i = 0; i < warps; ++i)
+    for (std::size_t j = warps; j < sets.size(); ++j) {
+      const Overlap shared = overlap(sets[i], sets[j]);
+      check.overlap_volume += shared.volume;
+      check.largest_depth = std::max(check.largest_depth, shared.depth);
+    }
+  check.overlap_share = check.overlap_volume / check.closed_form_total;
+  return check;
+}
+
+}  // namespace heddle::mesoscale

@@ -1,0 +1,380 @@
+#include "macroscale/tool_band.h"
+
+#include <Eigen/Geometry>
+#include <catch2/catch.hpp>
+#include <cmath>
+#include <cstdio>
+#include <limits>
+#include <random>
+
+#include "core/problem.h"
+#include "macroscale/system.h"
+#include "tests/derivative_check.h"
+#include "tests/macroscale/sample_fabric.h"
+#include "tests/macroscale/tool_meshes.h"
+
+using namespace heddle;
+using namespace heddle::macroscale;
+using Eigen::Matrix3d;
+using Eigen::Vector3d;
+using heddle::test::derivative_gap;
+
+namespace {
+
+constexpr double infinity = std::numeric_limits<double>::infinity();
+
+// Bodies with a closed distance that are round everywhere, so that only the interpolation errs.
+constexpr double ball_radius = 20e-3, ring_radius = 28e-3, ring_fillet = 6e-3;
+
+Distance ball_distance(const Vector3d& x) {
+  return distance(HemisphereShape{{0, 0, -ball_radius}, ball_radius}, x);
+}
+
+ToolBand ball_band(double voxel, double half_width = 2e-3) {
+  const auto d = [](double x, double y, double z) { return std::sqrt(x * x + y * y + z * z) - ball_radius; };
+  const double r = ball_radius;
+  return ToolBand(level_set_from_distance(d, {{-r, -r, -r}, {r, r, r}}, voxel, half_width / voxel + ToolBand::rim),
+                  half_width);
+}
+
+ToolBand torus_band(double voxel, double half_width = 2e-3) {
+  const auto d = [](double x, double y, double z) {
+    return std::hypot(std::hypot(x, y) - ring_radius, z) - ring_fillet;
+  };
+  const double r = ring_radius + ring_fillet;
+  return ToolBand(level_set_from_distance(d, {{-r, -r, -ring_fillet}, {r, r, ring_fillet}}, voxel,
+                                          half_width / voxel + ToolBand::rim),
+                  half_width);
+}
+
+struct Error {
+  double distance_rms = 0.0, distance_max = 0.0;    // [m]
+  double angle_rms = 0.0, angle_max = 0.0;          // [rad]
+  double length_max = 0.0;                          // | |n| - 1 |
+  double curvature_rms = 0.0, curvature_max = 0.0;  // Frobenius norm [1/m]
+};
+
+// `exact` against the band at points where(random) gives; those with |d| > reach are left out.
+template <class Exact, class Where>
+Error error_of(const ToolBand& band, const Exact& exact, const Where& where, double reach) {
+  std::mt19937 random(11);
+  Error e;
+  int count = 0;
+  for (int n = 0; n < 20000; ++n) {
+    const Vector3d x = where(random);
+    const Distance truth = exact(x);
+    if (std::abs(truth.distance) > reach) continue;
+    const Distance found = evaluate(band, x);
+    const double d = std::abs(found.distance - truth.distance);
+    const double angle = std::atan2(found.normal.cross(truth.normal).norm(), found.normal.dot(truth.normal));
+    const double curvature = (found.curvature - truth.curvature).norm();
+    ++count;
+    e.distance_rms += d * d;
+    e.angle_rms += angle * angle;
+    e.curvature_rms += curvature * curvature;
+    e.distance_max = std::max(e.distance_max, d);
+    e.angle_max = std::max(e.angle_max, angle);
+    e.length_max = std::max(e.length_max, std::abs(found.normal.norm() - 1.0));
+    e.curvature_max = std::max(e.curvature_max, curvature);
+  }
+  REQUIRE(count > 500);
+  for (double* sum : {&e.distance_rms, &e.angle_rms, &e.curvature_rms}) *sum = std::sqrt(*sum / count);
+  return e;
+}
+
+void print(const char* what, const Error& e) {
+  std::printf("%s: d rms %.3g max %.3g um; angle rms %.3g max %.3g deg; length %.3g; curvature rms %.3g max %.3g 1/m\n", what,
+              1e6 * e.distance_rms, 1e6 * e.distance_max, 57.2958 * e.angle_rms, 57.2958 * e.angle_max, e.length_max,
+              e.curvature_rms, e.curvature_max);
+}
+
+// Points in the box, even.
+auto in_box(const Vector3d& low, const Vector3d& high) {
+  return [low, high](std::mt19937& random) {
+    std::uniform_real_distribution<double> share(0.0, 1.0);
+    Vector3d x;
+    for (int c = 0; c < 3; ++c) x[c] = low[c] + share(random) * (high[c] - low[c]);
+    return x;
+  };
+}
+
+auto near_ball(double reach) {
+  return [reach](std::mt19937& random) {
+    std::uniform_real_distribution<double> share(-1.0, 1.0);
+    Vector3d n(share(random), share(random), -std::abs(share(random)));
+    return Vector3d(n.normalized() * (ball_radius + reach * share(random)));
+  };
+}
+
+}  // namespace
+
+TEST_CASE("scratch", "[.scratch]") {
+  for (double voxel : {1e-3, 0.5e-3, 0.25e-3}) {
+    std::printf("%g ", voxel);
+    print("ball", error_of(ball_band(voxel), ball_distance, near_ball(2e-3), 2e-3));
+    const RingShape ring{ring_fillet, ring_radius - ring_fillet, ring_fillet, true};
+    const auto exact = [&](const Vector3d& x) { return distance(ring, x); };
+    const auto where = in_box({0, 0, 0}, {28e-3, 28e-3, 8e-3});
+    const auto fillet_only = [&](std::mt19937& random) {
+      for (;;) {
+        const Vector3d x = where(random);
+        if (std::hypot(x.x(), x.y()) < ring_radius) return x;
+      }
+    };
+    print("torus", error_of(torus_band(voxel), exact, fillet_only, 2e-3));
+  }
+  for (int steps : {30, 60, 120})
+    for (double voxel : {1e-3, 0.5e-3}) {
+      const TriangleMesh mesh = test::punch_mesh(20e-3, 30e-3, steps);
+      std::printf("%d tris %zu %g V %g ", steps, mesh.triangles.size(), voxel, volume(mesh));
+      const ToolBand band = tool_band(mesh, {.voxel = voxel, .half_width = 3e-3}, "tools.punch");
+      const HemisphereShape punch{{0, 0, 0}, 20e-3};
+      print("punch", error_of(band, [&](const Vector3d& x) { return distance(punch, x); },
+                              in_box({-24e-3, -24e-3, -4e-3}, {24e-3, 24e-3, 24e-3}), 3e-3));
+      const TriangleMesh die = test::die_mesh(22e-3, 6e-3, 45e-3, 15e-3, steps / 2, 4 * steps);
+      std::printf("%d tris %zu %g V %g ", steps, die.triangles.size(), voxel, volume(die));
+      const ToolBand die_band = tool_band(die, {.voxel = voxel, .half_width = 3e-3}, "tools.die");
+      const RingShape ring{0.0, 22e-3, 6e-3, true};
+      print("die", error_of(die_band, [&](const Vector3d& x) { return distance(ring, x); },
+                            in_box({0, 0, -10e-3}, {28e-3, 28e-3, 4e-3}), 3e-3));
+      std::printf("memory %g MB, estimate %g MB\n", 1e-6 * static_cast<double>(die_band.memory()), 1e-6 * estimated_memory(die, {.voxel = voxel, .half_width = 3e-3}));
+    }
+}
+
+TEST_CASE("value and slope of a band are continuous across voxels and bricks, the Hessian bounded",
+          "[macroscale][tool_band]") {
+  const double voxel = 0.5e-3;
+  const ToolBand band = ball_band(voxel);
+  const double e = 1e-12;
+  std::mt19937 random(3);
+  const auto where = near_ball(1.9e-3);
+  int bricks_crossed = 0;
+  for (int n = 0; n < 3000; ++n) {
+    Vector3d x = where(random);
+    const int axis = n % 3;
+    const double border = std::floor(x[axis] / voxel) + 0.5;  // where the nearest voxel changes
+    bricks_crossed += (static_cast<int>(border + 0.5) & 7) == 0;
+    Vector3d below = x, above = x;
+    below[axis] = border * voxel - e;
+    above[axis] = border * voxel + e;
+    const Distance a = evaluate(band, below), b = evaluate(band, above);
+    if (!std::isfinite(a.distance) || std::abs(a.distance) > 1.9e-3) continue;
+    REQUIRE(std::abs(a.distance - b.distance) < 3.0 * e);
+    // The slope may change by the curvature times the way; 60 1/m is the sphere's, with the spline's own jumps.
+    REQUIRE((a.normal - b.normal).norm() < 2.0 * e * 200.0 + 1e-12);
+    REQUIRE((a.curvature - b.curvature).norm() < 20.0);
+  }
+  CHECK(bricks_crossed > 200);
+}
+
+TEST_CASE("a band's normal is the slope of its distance, and its curvature the slope of the normal",
+          "[macroscale][tool_band][derivative]") {
+  const double voxel = 0.5e-3;
+  const BandShape shape{std::make_shared<const ToolBand>(ball_band(voxel)), {0.01, -0.02, 0.3e-3}};
+  std::mt19937 random(5);
+  const auto where = near_ball(1.5e-3);
+  for (int n = 0; n < 30; ++n) {
+    Vector3d x = where(random) + shape.offset;
+    // Clear of the borders of voxels, where the curvature jumps.
+    for (int c = 0; c < 3; ++c)
+      x[c] = voxel * (std::floor((x[c] - shape.offset[c]) / voxel) + 0.2) + shape.offset[c];
+    const Distance at = distance(Shape(shape), x);
+    REQUIRE(std::abs(at.distance) < 2e-3);
+    for (int c = 0; c < 3; ++c) {
+      const auto moved = [&](double t) {
+        Vector3d y = x;
+        y[c] = t;
+        return distance(Shape(shape), y);
+      };
+      if (std::abs(at.normal[c]) > 1e-2) {
+        CHECK(derivative_gap([&](double t) { return moved(t).distance; }, x[c], voxel, at.normal[c]) < 1e-7);
+        CHECK(derivative_gap([&](double t) { return moved(t).distance; }, x[c], voxel, 1.01 * at.normal[c]) > 1e-4);
+      }
+      for (int r = 0; r < 3; ++r) {
+        const double h = 1e-3 * voxel;  // the slope is quadratic in a voxel: differences are exact
+        const double difference = (moved(x[c] + h).normal[r] - moved(x[c] - h).normal[r]) / (2.0 * h);
+        CHECK(at.curvature(r, c) == Approx(difference).margin(1e-5));
+      }
+    }
+  }
+}
+
+TEST_CASE("contact with a band: the residual is the slope of the potential, the matrix that of the residual",
+          "[macroscale][tool_band][derivative]") {
+  const auto fabric = test::make_fabric({});
+  Scene scene;
+  scene.blank = make_blank({0.02, 0.02}, 0.005);
+  scene.fabric = &fabric;
+  // The apex stands 0.4 mm below the blank: the middle node and its neighbours are pressed.
+  const BandShape punch{std::make_shared<const ToolBand>(ball_band(0.5e-3, 4e-3)), {0, 0, ball_radius - 0.3e-3}};
+  scene.tools = {{Role::punch, punch, Motion::driven, 0.0, 0.0}};
+  const State state = initial_state(scene);
+  StepData step;
+  step.dt = 5e-3;
+  step.start = &state;
+  step.target = state.x;
+  step.tool_z = {-0.1e-3};
+  step.frictionless = true;
+  System system(scene);
+  std::mt19937 random(7);
+  std::uniform_real_distribution<double> uniform(-1.0, 1.0);
+  Eigen::VectorXd x = state.x, d = state.x;
+  for (double& value : x) value += 1e-4 * uniform(random);
+  for (double& value : d) value = uniform(random);
+  int pressed = 0;
+  for (int i = 0; i < scene.blank.nodes(); ++i) pressed += system.tool_contact(step, x, 0, i).normal.pressure > 0.0;
+  REQUIRE(pressed >= 3);
+
+  // Only what the tool adds: the blank itself is stiffer by orders.
+  const auto compaction = [&](double t) {
+    return system.potential(step, x + t * d).compaction;
+  };
+  Eigen::VectorXd force = Eigen::VectorXd::Zero(x.size()), bend = force;
+  for (int i = 0; i < scene.blank.nodes(); ++i) {
+    const ToolContact contact = system.tool_contact(step, x, 0, i);
+    const double a = scene.blank.node_area[i];
+    const Vector3d along = d.segment<3>(3 * i);
+    force.segment<3>(3 * i) = -a * contact.normal.pressure * contact.surface.normal;
+    bend.segment<3>(3 * i) = a * (contact.normal.stiffness * contact.surface.normal.dot(along) * contact.surface.normal -
+                                  contact.normal.pressure * contact.surface.curvature * along);
+  }
+  CHECK(derivative_gap(compaction, 0.0, 1e-4, force.dot(d)) < 1e-6);
+  CHECK(derivative_gap(compaction, 0.0, 1e-4, 1.001 * force.dot(d)) > 1e-4);
+  const auto slope = [&](double t) {
+    const Eigen::VectorXd y = x + t * d;
+    double sum = 0.0;
+    for (int i = 0; i < scene.blank.nodes(); ++i) {
+      const ToolContact contact = system.tool_contact(step, y, 0, i);
+      sum -= scene.blank.node_area[i] * contact.normal.pressure * contact.surface.normal.dot(d.segment<3>(3 * i));
+    }
+    return sum;
+  };
+  CHECK(derivative_gap(slope, 0.0, 1e-4, bend.dot(d)) < 1e-6);
+  CHECK(derivative_gap(slope, 0.0, 1e-4, 1.001 * bend.dot(d)) > 1e-4);
+
+  // And the whole system, as the solver sees it.
+  const Eigen::VectorXd g = system.gradient(step, x);
+  CHECK(derivative_gap([&](double t) { return system.potential(step, x + t * d).total(); }, 0.0, 1e-4, g.dot(d)) <
+        1e-6);
+}
+
+TEST_CASE("beyond its band a tool is either far or an error, never 'no contact' inside",
+          "[macroscale][tool_band]") {
+  const ToolBand band = ball_band(0.5e-3);
+  const double w = band.half_width();
+  CHECK(w == 2e-3);
+  CHECK(band.depth() >= w);
+  // Along a line from the middle outwards.
+  double before = -infinity;
+  for (double r = 0.0; r < 0.06; r += 0.05e-3) {
+    const Vector3d x = r * Vector3d(0.3, -0.5, 0.8).normalized();
+    const Distance found = evaluate(band, x);
+    CAPTURE(r, found.distance);
+    CHECK(found.normal.allFinite());
+    CHECK(found.curvature.allFinite());
+    const double truth = r - ball_radius;
+    if (truth < -w - 1e-6) {
+      CHECK(found.distance == -infinity);
+      CHECK(beyond_band(band, x));
+      continue;
+    }
+    if (truth < -w + 1e-6) continue;
+    CHECK_FALSE(beyond_band(band, x));
+    CHECK(found.distance >= std::min(before, w));
+    if (truth <= w) {
+      CHECK(found.distance == Approx(truth).margin(2e-6));
+    } else {
+      CHECK(found.distance >= w - 1e-6);
+      CHECK(found.distance <= truth + 2e-6);
+    }
+    before = found.distance;
+  }
+  CHECK(evaluate(band, {1.0, 0.0, 0.0}).distance == Approx(1.0 - ball_radius).margin(10e-3));
+  CHECK(evaluate(band, {1.0, 0.0, 0.0}).distance < 1.0 - ball_radius);
+  CHECK(evaluate(band, {1e300, 0.0, 0.0}).distance > 1e200);
+  const Vector3d nowhere(0.0, std::numeric_limits<double>::quiet_NaN(), 0.0);
+  CHECK(std::isnan(evaluate(band, nowhere).distance));
+  CHECK(beyond_band(band, nowhere));
+}
+
+TEST_CASE("pressed beyond the band, the contact energy is not finite, so no line search takes the step",
+          "[macroscale][tool_band]") {
+  const auto fabric = test::make_fabric({});
+  Scene scene;
+  scene.blank = make_blank({0.02, 0.02}, 0.01);
+  scene.fabric = &fabric;
+  scene.tools = {{Role::punch, BandShape{std::make_shared<const ToolBand>(ball_band(0.5e-3)), {0, 0, 0}},
+                  Motion::driven, 0.0, 0.0}};
+  const State state = initial_state(scene);
+  StepData step;
+  step.dt = 5e-3;
+  step.start = &state;
+  step.target = state.x;
+  step.tool_z = {0.0};
+  step.frictionless = true;
+  System system(scene);
+  CHECK_FALSE(std::isfinite(system.potential(step, state.x).compaction));
+  step.tool_z = {0.05};
+  CHECK(system.potential(step, state.x).compaction == 0.0);
+}
+
+TEST_CASE("a sheet has a band on both sides, told by its normals", "[macroscale][tool_band]") {
+  // The lower half of a ball as a bowl, normals downwards and outwards; far from its rim.
+  test::Meridian meridian;
+  test::add_arc(meridian, {0.0, 0.0}, ball_radius, -0.5 * std::numbers::pi, 0.0, 60);
+  const TriangleMesh bowl = test::revolved(meridian, 240, false);
+  CHECK_THROWS_AS(tool_band(bowl, {.voxel = 0.5e-3, .half_width = 2e-3}, "tools.punch"), InputError);
+  const ToolBand band = tool_band(bowl, {.voxel = 0.5e-3, .half_width = 2e-3, .sides = Sides::open}, "tools.punch");
+  std::mt19937 random(9);
+  const auto where = near_ball(1.9e-3);
+  for (int n = 0; n < 2000; ++n) {
+    const Vector3d x = where(random);
+    if (x.z() > -4e-3) continue;
+    REQUIRE(evaluate(band, x).distance == Approx(x.norm() - ball_radius).margin(10e-6));
+  }
+  CHECK(beyond_band(band, {0.0, 0.0, -10e-3}));
+  CHECK(evaluate(band, {0.0, 0.0, -30e-3}).distance >= 2e-3);
+  CHECK(evaluate(band, {30e-3, 0.0, -10e-3}).distance >= 2e-3);
+}
+
+TEST_CASE("a band too large, too narrow or for a tool too thin is refused with the way out",
+          "[macroscale][tool_band]") {
+  const auto problem = [](const TriangleMesh& mesh, const ToolBandSpec& spec) -> std::string {
+    try {
+      tool_band(mesh, spec, "tools.die");
+    } catch (const InputError& error) {
+      REQUIRE(error.problems().size() == 1);
+      CHECK_FALSE(error.problems().front().way_out.empty());
+      return error.problems().front().id;
+    }
+    return "";
+  };
+  const TriangleMesh plate = test::box_mesh({-50e-3, -50e-3, -8e-3}, {50e-3, 50e-3, 0.0});
+  CHECK(problem(plate, {.voxel = 1e-3, .half_width = 3e-3}) == "");
+  CHECK(problem(plate, {.voxel = 0.01e-3, .half_width = 3e-3}) == "tool.band.memory");
+  CHECK(problem(plate, {.voxel = 1e-3, .half_width = 5e-3}) == "tool.thin");
+  CHECK(problem(plate, {.voxel = 0.0}) == "tool.voxel.range");
+  CHECK(problem(plate, {.half_width = -1.0}) == "tool.band.range");
+  CHECK(problem({}, {}) == "tool.empty");
+  TriangleMesh open = plate;
+  open.triangles.pop_back();
+  CHECK(problem(open, {.voxel = 1e-3, .half_width = 3e-3}) == "tool.mesh.open");
+  TriangleMesh wild = plate;
+  wild.vertices[3][1] = infinity;
+  CHECK(problem(wild, {}) == "tool.mesh.finite");
+  wild = plate;
+  wild.triangles[3][1] = 8;
+  CHECK(problem(wild, {}) == "tool.mesh.index");
+  CHECK_THROWS_AS(ToolBand(level_set_from_mesh(plate, 1e-3, 3.0), 2e-3), std::invalid_argument);
+  CHECK(required_half_width(0.6e-3, 1.5e-3, 1e-3) == Approx(3.1e-3));
+}
+
+TEST_CASE("a memory estimate is above what the band takes and within a factor of four", "[macroscale][tool_band]") {
+  const TriangleMesh punch = test::punch_mesh(20e-3, 30e-3, 30);
+  const ToolBandSpec spec{.voxel = 0.5e-3, .half_width = 3e-3};
+  const ToolBand band = tool_band(punch, spec, "tools.punch");
+  const LevelSet set = level_set_from_mesh(punch, spec.voxel, spec.half_width / spec.voxel + ToolBand::rim);
+  const double taken = static_cast<double>(band.memory() + set.memory());
+  CHECK(estimated_memory(punch, spec) > taken);
+  CHECK(estimated_memory(punch, spec) < 4.0 * taken);
+}
