@@ -11,6 +11,7 @@
 #include "core/progress.h"
 #include "pipeline/case.h"
 #include "pipeline/export_vtu.h"
+#include "pipeline/orientation.h"
 #include "pipeline/report.h"
 #include "pipeline/run_folder.h"
 #include "pipeline/stages.h"
@@ -287,6 +288,7 @@ int run_part(const RunOptions& options, Part part) {
   refuse_resume(options);
   const Case a_case = read_part(options, part);
   const auto threads = limit_threads(options.threads);
+  if (part == Part::all && a_case.orientation_study) return run_orientation_study(options, a_case);
   RunFolder folder(a_case, output_folder(options, a_case), options.force);
   Findings findings;
   for (const std::string& note : a_case.notes) folder.log("note: " + note);

@@ -70,15 +70,18 @@ Json cell_json(const mesoscale::CellSummary& cell, const std::optional<double>& 
 }
 
 Json stamping_json(const macroscale::StampingSummary& summary) {
+  Json rays = Json::array();
+  for (const double draw_in : summary.draw_in_rays) rays.push_back(1e3 * draw_in);
   Json out{{"completed", summary.completed},
            {"peak_punch_force_N", summary.peak_punch_force},
            {"shear_angle_max_deg", degrees * summary.shear_angle_max},
            {"draw_in_max_mm", 1e3 * summary.draw_in_max},
+           {"draw_in_rays_mm", rays},
            {"energy_residual_max", summary.energy_residual_max},
            {"force_balance_residual_max", summary.force_balance_residual_max},
            {"numerical_dissipation_share", summary.numerical_dissipation_share},
            {"twist_share", summary.twist_share}};
-  // A blank that is not a 0/90 square has no eightfold symmetry to miss.
+  // A blank whose grid has not got the eight symmetries of the square has none to miss.
   if (summary.symmetry_gap_shear >= 0.0) out["symmetry_gap_shear"] = summary.symmetry_gap_shear;
   if (summary.symmetry_gap_draw_in >= 0.0) out["symmetry_gap_draw_in"] = summary.symmetry_gap_draw_in;
   out["friction_work_outside_calibration"] = summary.friction_work_outside;

@@ -369,8 +369,9 @@ Canvas formed_picture(const macroscale::BlankState& blank) {
   return draw(picture);
 }
 
-Canvas top_picture(const macroscale::BlankState& blank) {
+Canvas top_picture(const macroscale::BlankState& blank, double largest_angle) {
   MeshPicture picture = mesh_picture(blank);
+  if (largest_angle > 0.0) picture.colours.high = degrees * largest_angle;
   picture.label = "The formed blank from above, coloured by shear angle, with its first outline";
   picture.outlines = flat_outlines(blank.outline);
   return draw(picture);

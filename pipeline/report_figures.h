@@ -25,7 +25,8 @@ Canvas friction_chart(const std::vector<FrictionCurveRow>& rows, FrictionAbsciss
 
 /// @throws std::invalid_argument  if the blank holds fewer nodes or angles than its cells need
 Canvas formed_picture(const macroscale::BlankState& blank);
-Canvas top_picture(const macroscale::BlankState& blank);
+/// @param largest_angle  upper end of the colour scale [rad]; 0: the blank's own largest
+Canvas top_picture(const macroscale::BlankState& blank, double largest_angle = 0.0);
 
 /// Share of the residual in the work the punch has done so far, by the measure of summary.json: the work
 /// counts as at least 1 % of its final value, so that the first step does not divide by nothing.
