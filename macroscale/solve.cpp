@@ -100,13 +100,6 @@ Largest largest(const VectorXd& g) {
   return {value, static_cast<int>(at)};
 }
 
-// "node 12", or "loaded tool 0" for the unknowns behind the nodes.
-std::string name_of(const System& system, int unknown) {
-  const int nodes = system.scene().blank.nodes();
-  return unknown < 3 * nodes ? fmt::format("node {}", unknown / 3)
-                             : fmt::format("loaded tool {}", unknown - 3 * nodes);
-}
-
 void demand_finite(const System& system, const VectorXd& values, const char* quantity, double time) {
   if (values.allFinite()) return;
   for (Eigen::Index k = 0; k < values.size(); ++k)
@@ -148,6 +141,7 @@ Direction newton_direction(System& system, const StepData& step, const VectorXd&
 struct Pass {
   bool converged = false;
   std::string reason;
+  bool stopped = false;
 };
 
 // Newton with line search at frozen friction loads.
@@ -157,6 +151,7 @@ Pass minimise(System& system, const StepData& step, VectorXd& x, const SolveOpti
   VectorXd g = system.gradient(step, x);
   double energy = system.potential(step, x).total();
   for (int iteration = 0; iteration <= options.newton_limit; ++iteration) {
+    if (options.stop && options.stop()) return {false, "stopped from outside", true};
     demand_finite(system, g, "residual force", step.start->time + step.dt);
     const Largest worst = largest(g);
     summary.residual = worst.value;
@@ -212,7 +207,8 @@ Pass minimise(System& system, const StepData& step, VectorXd& x, const SolveOpti
                              summary.residual, summary.worst)};
 }
 
-void accept(const System& system, const StepData& step, const VectorXd& x, State& end) {
+// Positions, velocities and angles at the end of a step that reached x; contact remembers what it did before.
+void place(const System& system, const StepData& step, const VectorXd& x, State& end) {
   const Scene& scene = system.scene();
   const State& start = *step.start;
   end.time = start.time + step.dt;
@@ -231,6 +227,11 @@ void accept(const System& system, const StepData& step, const VectorXd& x, State
     }
   }
   end.memory = start.memory;
+}
+
+void accept(const System& system, const StepData& step, const VectorXd& x, State& end) {
+  place(system, step, x, end);
+  const Scene& scene = system.scene();
   if (step.frictionless || !scene.friction) return;
   const FrictionSettings settings = system.friction_settings();
   for (int k = 0; k < static_cast<int>(scene.tools.size()); ++k)
@@ -278,6 +279,18 @@ std::string fault_of(const System& system, const StepData& step, const State& en
 
 }  // namespace
 
+std::string name_of(const System& system, int unknown) {
+  const int nodes = system.scene().blank.nodes();
+  return unknown < 3 * nodes ? fmt::format("node {}", unknown / 3)
+                             : fmt::format("loaded tool {}", unknown - 3 * nodes);
+}
+
+State state_at_iterate(const System& system, const StepData& step) {
+  State state;
+  place(system, step, step.iterate, state);
+  return state;
+}
+
 StepSummary advance(System& system, const State& state, double dt, const std::vector<double>& tool_z,
                     const std::function<void(double, VectorXd&)>& prescribe, const SolveOptions& options,
                     State& end, StepData& step) {
@@ -294,7 +307,8 @@ StepSummary advance(System& system, const State& state, double dt, const std::ve
   old_place.tool_z = state.tool_z;
   step.friction = freeze(system, old_place, state.x, shear_angle);
 
-  VectorXd x = step.target;
+  step.iterate = step.target;
+  VectorXd& x = step.iterate;
   if (prescribe) prescribe(state.time + dt, x);
   StepSummary summary;
   const double tolerance = std::max(
@@ -312,6 +326,7 @@ StepSummary advance(System& system, const State& state, double dt, const std::ve
                          summary);
     if (!pass.converged) {
       summary.reason = pass.reason;
+      summary.stopped = pass.stopped;
       return summary;
     }
     if (!rubs) break;
@@ -320,6 +335,7 @@ StepSummary advance(System& system, const State& state, double dt, const std::ve
       pass = minimise(system, step, x, options, tolerance, summary);
       if (!pass.converged) {
         summary.reason = pass.reason;
+        summary.stopped = pass.stopped;
         return summary;
       }
       next = update();

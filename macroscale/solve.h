@@ -22,12 +22,14 @@ struct SolveOptions {
   int newton_limit = 60;             ///< iterations a pass
   int lag_limit_iterations = 6;
   int line_search_limit = 30;
+  std::function<bool()> stop = {};  ///< asked before each Newton iteration; true ends the step (empty: never)
 };
 
 /// How one time step ended. Not converging is a result; a value that is not finite throws NumericalError.
 struct StepSummary {
   bool converged = false;
-  std::string reason;  ///< "converged", or what went wrong in words
+  bool stopped = false;  ///< SolveOptions::stop said so
+  std::string reason;    ///< "converged", or what went wrong in words
   int newton_iterations = 0;
   int lag_iterations = 0;
   double residual = 0.0;  ///< largest nodal residual at the end [N]
@@ -39,9 +41,18 @@ struct StepSummary {
 /// @param prescribe  writes the prescribed positions of held unknowns into x (end of step); may be empty
 /// @param tool_z   end positions of fixed and driven tools [m]
 /// @param end      state at the end of the step, written only when converged
-/// @param step     what was held (frozen friction loads of the last pass), for the ledger
+/// @param step     what was held (frozen friction loads of the last pass), for the ledger; step.iterate is
+/// where the
+///                 search ended, whatever ended it, NumericalError included
 StepSummary advance(System& system, const State& state, double dt, const std::vector<double>& tool_z,
                     const std::function<void(double time, Eigen::VectorXd& x)>& prescribe,
                     const SolveOptions& options, State& end, StepData& step);
+
+/// The blank at step.iterate, without a new memory of contact: what a step that failed looked like in the
+/// end.
+State state_at_iterate(const System& system, const StepData& step);
+
+/// Name of an unknown: "node 12", or "loaded tool 0" for those behind the nodes.
+std::string name_of(const System& system, int unknown);
 
 }  // namespace heddle::macroscale

@@ -2,9 +2,11 @@
 
 #include <algorithm>
 #include <cmath>
+#include <stdexcept>
 
 #include <fmt/format.h>
 
+#include "macroscale/checkpoint.h"
 #include "macroscale/ledger.h"
 #include "macroscale/punch_profile.h"
 #include "macroscale/quality.h"
@@ -49,13 +51,12 @@ Scene stamping_scene(const StampingSpec& spec, const mesoscale::FabricProperties
 
 // Equilibrium under the binder force before the punch moves. Only the edges of the rings are off balance, so
 // residuals are small from the start and the tolerance must be as well.
-StepSummary close_binder(System& system, const SolveOptions& options, State& state) {
+StepSummary close_binder(System& system, const SolveOptions& options, State& state, StepData& step) {
   SolveOptions closing = options;
   closing.frictionless = true;
   closing.force_tolerance = 1e-6;
   closing.relative_tolerance = 1e-6;
   State end;
-  StepData step;
   const StepSummary summary = advance(system, state, 1.0, state.tool_z, {}, closing, end, step);
   if (!summary.converged) return summary;
   state = std::move(end);
@@ -105,130 +106,239 @@ int parts_of_step(const StampingSpec& spec, double thickness, double spacing) {
   return std::max(1, static_cast<int>(std::ceil(spec.process.stroke / spec.process.steps / limit - 1e-9)));
 }
 
+// How a step, or the whole run, ended.
+enum class Ending { done, failed, stopped };
+
+std::vector<std::pair<std::string, double>> terms_of(const PotentialTerms& p) {
+  return {{"inertia", p.inertia},       {"tow", p.tow},         {"shear", p.shear},
+          {"shear_rate", p.rate},       {"bending", p.bending}, {"twist", p.twist},
+          {"compaction", p.compaction}, {"loads", p.loads},     {"stabilisation", p.stabilisation}};
+}
+
+// Residuals and energies of the last iterate, sorted by what is a number and what is not.
+void describe_iterate(StampingFailure& failure, const System& system, const StepData& attempt) {
+  const Eigen::VectorXd& x = attempt.iterate;
+  const Eigen::VectorXd g = system.gradient(attempt, x);
+  const int nodes = system.scene().blank.nodes();
+  const auto add = [&](int unknown, double residual, const std::array<double, 3>& position) {
+    if (std::isfinite(residual))
+      failure.worst.push_back({name_of(system, unknown), residual, position});
+    else
+      failure.not_finite.push_back("residual of " + name_of(system, unknown));
+  };
+  for (int i = 0; i < nodes; ++i) {
+    const double residual = g.segment<3>(3 * i).norm();
+    failure.residual.push_back(std::isfinite(residual) ? residual : -1.0);
+    add(3 * i, residual, {x[3 * i], x[3 * i + 1], x[3 * i + 2]});
+  }
+  for (int k = 3 * nodes; k < system.size(); ++k) add(k, std::abs(g[k]), {0.0, 0.0, x[k]});
+  constexpr std::size_t shown = 10;
+  std::stable_sort(failure.worst.begin(), failure.worst.end(),
+                   [](const auto& a, const auto& b) { return a.residual > b.residual; });
+  failure.worst.resize(std::min(failure.worst.size(), shown));
+  for (const auto& [name, value] : terms_of(system.potential(attempt, x))) {
+    if (std::isfinite(value))
+      failure.energies.emplace_back(name, value);
+    else
+      failure.not_finite.push_back("energy of " + name);
+  }
+}
+
 class Run {
  public:
   Run(const StampingSpec& spec, const mesoscale::FabricProperties& fabric, const friction::Model& friction,
-      const StampingObserver& observe)
-      : spec_(spec),
-        observe_(observe),
-        scene_(stamping_scene(spec, fabric, friction)),
-        system_(scene_),
-        state_(initial_state(scene_)) {}
+      const StampingControl& control)
+      : spec_(spec), control_(control), scene_(stamping_scene(spec, fabric, friction)), system_(scene_) {
+    options_.stop = control.stop;
+    now_.state = initial_state(scene_);
+    now_.blank = blank_state(system_, now_.state, nullptr);
+  }
   Run(const Run&) = delete;  // the system points at the scene
   Run& operator=(const Run&) = delete;
 
   // A value that is not finite ends the run like any other failure: what was reached is kept.
   StampingResult result() {
-    describe();
+    Ending ending = Ending::failed;
     try {
-      return drive();
+      ending = drive();
     } catch (const NumericalError& error) {
-      return fail(error.what());
+      reason_ = error.what();
     }
-  }
-
- private:
-  StampingResult drive() {
-    const StepSummary closed = close_binder(system_, options_, state_);
-    if (!closed.converged) return fail("closing the binder: " + closed.reason);
-    const BlankState blank = blank_state(system_, state_, nullptr);
-    finish_row(row_, blank, state_, scene_);
-    if (observe_) observe_(0, spec_.process.steps, row_, blank);
-    const int parts = parts_of_step(spec_, scene_.fabric->thickness,
-                                    std::max(scene_.blank.spacing[0], scene_.blank.spacing[1]));
-    for (int step = 1; step <= spec_.process.steps; ++step)
-      if (!advance_to(step, parts)) return fail(reason_);
+    if (ending == Ending::stopped) return stop();
+    if (ending == Ending::failed) return fail();
+    keep(now_, true);
     result_.summary.completed = true;
     return finish();
   }
 
-  void describe() {
-    result_.summary.nodes = scene_.blank.nodes();
-    result_.summary.spacing = scene_.blank.spacing;
+ private:
+  Ending drive() {
+    const Ending begun = control_.resume_from ? resume(*control_.resume_from) : begin();
+    if (begun != Ending::done) return begun;
+    const int parts = parts_of_step(spec_, scene_.fabric->thickness,
+                                    std::max(scene_.blank.spacing[0], scene_.blank.spacing[1]));
+    while (now_.step < spec_.process.steps) {
+      const Ending ending = advance_to(now_.step + 1, parts);
+      if (ending != Ending::done) return ending;
+    }
+    return Ending::done;
+  }
+
+  Ending begin() {
+    const StepSummary closed = close_binder(system_, options_, now_.state, attempt_);
+    if (closed.stopped) return Ending::stopped;
+    if (!closed.converged) {
+      reason_ = "closing the binder: " + closed.reason;
+      return Ending::failed;
+    }
+    now_.blank = blank_state(system_, now_.state, nullptr);
+    finish_row(now_.row, now_.blank, now_.state, scene_);
+    show_and_keep();
+    return Ending::done;
+  }
+
+  Ending resume(const StampingCheckpoint& checkpoint) {
+    if (const std::string fault = fault_of(checkpoint, scene_, spec_.process.steps); !fault.empty())
+      throw std::invalid_argument("the checkpoint is not of this run: " + fault);
+    now_ = checkpoint;
+    whole_ = now_;
+    return Ending::done;
   }
 
   // One nominal step, in equal parts of stroke; a part that fails is halved, and the rest goes on with the
   // halves.
-  bool advance_to(int step, int parts) {
-    row_.newton_iterations = row_.lag_iterations = 0;
-    row_.force_balance = 0.0;
+  Ending advance_to(int step, int parts) {
+    now_.row.newton_iterations = now_.row.lag_iterations = 0;
+    now_.row.force_balance = 0.0;
     const double stroke = spec_.process.stroke / spec_.process.steps;
     long pieces = parts, done = 0;
     while (done < pieces) {
       const double share = static_cast<double>(done + 1) / static_cast<double>(pieces);
       const double next = time_at_stroke(spec_.process, stroke * (step - 1 + share));
-      if (advance_part(next - state_.time, next)) {
+      const Ending ending = advance_part(next - now_.state.time, next);
+      if (ending == Ending::stopped) return ending;
+      if (ending == Ending::done) {
         ++done;
         continue;
       }
-      ++result_.summary.rejected_steps;
+      ++now_.rejected_steps;
       pieces *= 2;
       done *= 2;
-      if (next - state_.time < 2e-7) {
+      if (next - now_.state.time < 2e-7) {
         reason_ = fmt::format("step {} of {} (punch at {:.2f} mm): {}; the time step fell below 1e-7 s", step,
-                              spec_.process.steps, -1e3 * state_.tool_z[punch], reason_);
-        return false;
+                              spec_.process.steps, -1e3 * now_.state.tool_z[punch], reason_);
+        return Ending::failed;
       }
     }
-    const BlankState blank = close_row();
-    if (observe_) observe_(step, spec_.process.steps, row_, blank);
-    return true;
+    now_.step = step;
+    close_row();
+    show_and_keep();
+    return Ending::done;
   }
 
-  BlankState close_row() {
-    BlankState blank = blank_state(system_, state_, &last_step_);
-    finish_row(row_, blank, state_, scene_);
-    result_.history.push_back(row_);
-    return blank;
+  void close_row() {
+    now_.blank = blank_state(system_, now_.state, &last_step_);
+    finish_row(now_.row, now_.blank, now_.state, scene_);
+    now_.history.push_back(now_.row);
   }
 
-  bool advance_part(double dt, double time) {
+  // The observer comes first: what it writes belongs to the step that a checkpoint says is done.
+  void show_and_keep() {
+    if (control_.observe) control_.observe(now_.step, spec_.process.steps, now_.row, now_.blank);
+    whole_ = now_;
+    keep(now_, false);
+  }
+
+  void keep(const StampingCheckpoint& checkpoint, bool last) const {
+    if (control_.keep) control_.keep(checkpoint, last);
+  }
+
+  Ending advance_part(double dt, double time) {
     State end;
-    std::vector<double> tool_z = state_.tool_z;
+    std::vector<double> tool_z = now_.state.tool_z;
     tool_z[punch] = -stroke_at_time(spec_.process, time);
-    StepData step;
-    const StepSummary summary = advance(system_, state_, dt, tool_z, {}, options_, end, step);
-    result_.summary.newton_iterations += summary.newton_iterations;
-    row_.newton_iterations += summary.newton_iterations;
-    row_.lag_iterations += summary.lag_iterations;
+    const StepSummary summary = advance(system_, now_.state, dt, tool_z, {}, options_, end, attempt_);
+    now_.newton_iterations += summary.newton_iterations;
+    now_.row.newton_iterations += summary.newton_iterations;
+    now_.row.lag_iterations += summary.lag_iterations;
+    if (summary.stopped) return Ending::stopped;
     if (!summary.converged) {
       reason_ = summary.reason;
-      return false;
+      return Ending::failed;
     }
-    add_to_history(row_, account(system_, step, end));
-    result_.summary.falling_branch |= on_falling_branch(system_, step, end);
-    peak_force_balance_ = std::max(peak_force_balance_, row_.force_balance);
+    add_to_history(now_.row, account(system_, attempt_, end));
+    now_.falling_branch |= on_falling_branch(system_, attempt_, end);
+    now_.peak_force_balance = std::max(now_.peak_force_balance, now_.row.force_balance);
     end.time = time;
-    start_ = std::move(state_);
-    state_ = std::move(end);
-    last_step_ = std::move(step);
+    start_ = std::move(now_.state);
+    now_.state = std::move(end);
+    last_step_ = std::move(attempt_);
     last_step_.start = &start_;
-    return true;
+    return Ending::done;
   }
 
-  StampingResult fail(const std::string& why) {
-    result_.summary.failure = why;
-    // Parts of a step that were accepted before its rest failed belong to the history.
-    const double recorded = result_.history.empty() ? 0.0 : result_.history.back().time;
-    if (state_.time > recorded) close_row();
+  // Parts of a step are not kept: the step is done again, with the same bits.
+  StampingResult stop() {
+    result_.summary.stopped = true;
+    result_.summary.failure = "stopped from outside";
+    const bool begun = !whole_.state.memory.empty();
+    if (begun) {
+      now_ = std::move(whole_);
+      keep(now_, true);
+    }
     return finish();
   }
 
+  StampingResult fail() {
+    describe_failure();
+    if (!whole_.state.memory.empty()) keep(whole_, true);
+    result_.summary.failure = reason_;
+    // Parts of a step that were accepted before its rest failed belong to the history.
+    const double recorded = now_.history.empty() ? 0.0 : now_.history.back().time;
+    if (now_.state.time > recorded) close_row();
+    return finish();
+  }
+
+  void describe_failure() {
+    StampingFailure failure;
+    failure.reason = reason_;
+    failure.step = whole_.state.memory.empty() ? 0 : now_.step + 1;
+    if (attempt_.start && attempt_.iterate.size() > 0) {
+      failure.time_step = attempt_.dt;
+      failure.time = attempt_.start->time + attempt_.dt;
+      try {
+        failure.blank = blank_state(system_, state_at_iterate(system_, attempt_), nullptr);
+        describe_iterate(failure, system_, attempt_);
+      } catch (const NumericalError& error) {  // the law itself has no value there: that is worth saying
+        failure.not_finite.push_back(error.what());
+      }
+    }
+    result_.failure = std::move(failure);
+  }
+
   StampingResult finish() {
-    result_.final_state = blank_state(system_, state_, result_.history.empty() ? nullptr : &last_step_);
-    summarise(result_, scene_.blank, state_, peak_force_balance_);
+    StampingSummary& s = result_.summary;
+    s.nodes = scene_.blank.nodes();
+    s.spacing = scene_.blank.spacing;
+    s.rejected_steps = now_.rejected_steps;
+    s.newton_iterations = now_.newton_iterations;
+    s.falling_branch = now_.falling_branch;
+    result_.history = std::move(now_.history);
+    result_.final_state = std::move(now_.blank);
+    summarise(result_, scene_.blank, now_.state, now_.peak_force_balance);
     return std::move(result_);
   }
 
   const StampingSpec& spec_;
-  const StampingObserver& observe_;
+  const StampingControl& control_;
   Scene scene_;
   System system_;
   SolveOptions options_;
-  State state_, start_;
-  StepData last_step_;
-  HistoryRow row_;
-  double peak_force_balance_ = 0.0;
+  StampingCheckpoint now_;    ///< moves on with every part of a step
+  StampingCheckpoint whole_;  ///< after the last whole step; empty until the binder has closed
+  State start_;               ///< of last_step_
+  StepData last_step_;        ///< the last part that was accepted
+  StepData attempt_;          ///< the last one tried
   std::string reason_;
   StampingResult result_;
 };
@@ -247,12 +357,17 @@ Outline outline_of(const BlankSpec& blank) {
 
 StampingResult run_stamping(const StampingSpec& spec, const mesoscale::FabricProperties& fabric,
                             const friction::Model& friction, const StampingObserver& observe) {
+  return run_stamping(spec, fabric, friction, StampingControl{.observe = observe});
+}
+
+StampingResult run_stamping(const StampingSpec& spec, const mesoscale::FabricProperties& fabric,
+                            const friction::Model& friction, const StampingControl& control) {
   Problems problems = check(spec);
   const Problems of_fabric = mesoscale::check(fabric);
   problems.insert(problems.end(), of_fabric.begin(), of_fabric.end());
   if (!problems.empty()) throw InputError(std::move(problems));
   const StampingSpec loaded = with_tools_loaded(spec);
-  return Run(loaded, fabric, friction, observe).result();
+  return Run(loaded, fabric, friction, control).result();
 }
 
 }  // namespace heddle::macroscale

@@ -6,6 +6,7 @@
 #include <memory>
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "core/problem.h"
@@ -156,17 +157,51 @@ struct StampingSummary {
   int nodes = 0, steps = 0, rejected_steps = 0, newton_iterations = 0;
   std::array<double, 2> spacing{};  ///< as used [m]
   bool completed = false;
-  std::string failure;  ///< why it stopped, when not completed
+  bool stopped = false;  ///< from outside, between two Newton iterations; no failure
+  std::string failure;   ///< why it stopped, when not completed
+};
+
+/// What the last attempt of a stamping that failed looked like in the end.
+struct StampingFailure {
+  std::string reason;
+  int step = 0;                  ///< that failed; 0 = closing the binder
+  double time = 0.0;             ///< where the last attempt would have ended [s]
+  double time_step = 0.0;        ///< of the last attempt [s]
+  BlankState blank;              ///< the last iterate
+  std::vector<double> residual;  ///< out-of-balance force of each node there [N]; -1 = not finite
+  struct Unknown {
+    std::string name;                  ///< "node 12", "loaded tool 0"
+    double residual = 0.0;             ///< [N]
+    std::array<double, 3> position{};  ///< of a node [m]; of a tool {0, 0, z}
+  };
+  std::vector<Unknown> worst;                            ///< largest finite residual first, at most ten
+  std::vector<std::pair<std::string, double>> energies;  ///< terms of the incremental potential there [J]
+  std::vector<std::string> not_finite;                   ///< nodes and energies that are no numbers any more
 };
 
 struct StampingResult {
   StampingSummary summary;
   std::vector<HistoryRow> history;
   BlankState final_state;
+  std::optional<StampingFailure> failure;  ///< present where summary.failure is
 };
 
 /// Called after each accepted step, and once with step 0 when the binder has closed.
 using StampingObserver = std::function<void(int step, int steps, const HistoryRow&, const BlankState&)>;
+
+struct StampingCheckpoint;  // macroscale/checkpoint.h
+
+/// How a run is watched, kept and stopped. None of it changes a result.
+struct StampingControl {
+  StampingObserver observe = {};
+  /// Called when the binder has closed and after each step with all that the next step needs, and once more
+  /// when the run ends, whatever ends it (`last`): after a failure or a stop with the state after the last
+  /// whole step.
+  std::function<void(const StampingCheckpoint&, bool last)> keep = {};
+  std::function<bool()> stop = {};  ///< asked between Newton iterations; true ends the run
+  const StampingCheckpoint* resume_from =
+      nullptr;  ///< of a run with the same arguments; null = from the start
+};
 
 Problems check(const StampingSpec& spec);
 
@@ -175,5 +210,11 @@ Problems check(const StampingSpec& spec);
 /// @throws InputError      if check(spec) or check(fabric) finds something
 StampingResult run_stamping(const StampingSpec& spec, const mesoscale::FabricProperties& fabric,
                             const friction::Model& friction, const StampingObserver& observe = {});
+
+/// The same, resumed, kept and stopped as `control` says. A run that goes on from a checkpoint ends with the
+/// same bits as one that was never interrupted; `observe` is called for the steps still to do.
+/// @throws std::invalid_argument  if the checkpoint is not of this blank
+StampingResult run_stamping(const StampingSpec& spec, const mesoscale::FabricProperties& fabric,
+                            const friction::Model& friction, const StampingControl& control);
 
 }  // namespace heddle::macroscale

@@ -22,6 +22,7 @@ struct StepData {
   bool frictionless = false;   ///< friction switched off for this step (closing the binder)
   /// Per tool, per node: the lagged friction point (load 0 = no friction).
   std::vector<std::vector<FrictionPoint>> friction;
+  Eigen::VectorXd iterate;  ///< the last position tried; the end of the step once it has converged [m]
 };
 
 /// One node against one tool.

@@ -2,7 +2,10 @@
 
 #include <CLI/CLI.hpp>
 #include <algorithm>
+#include <cstdlib>
 #include <iostream>
+
+#include "core/problem.h"
 
 #ifndef HEDDLE_VERSION
 #error "HEDDLE_VERSION comes from the build (project version)"
@@ -50,6 +53,25 @@ CLI::App* add_check(CLI::App& program, CheckOptions& options) {
   return command;
 }
 
+/// HEDDLE_CACHE names the folder of the cache; `off` switches it off.
+std::filesystem::path cache_folder() {
+  const char* asked = std::getenv("HEDDLE_CACHE");
+  if (asked == nullptr || *asked == '\0') return "out/.cache";
+  return std::string(asked) == "off" ? std::filesystem::path() : std::filesystem::path(asked);
+}
+
+/// HEDDLE_CHECKPOINT_SECONDS: wall time between two checkpoints.
+double checkpoint_interval(double usual) {
+  const char* asked = std::getenv("HEDDLE_CHECKPOINT_SECONDS");
+  if (asked == nullptr || *asked == '\0') return usual;
+  char* end = nullptr;
+  const double seconds = std::strtod(asked, &end);
+  if (*end != '\0' || !(seconds >= 0.0))
+    throw InputError({{"environment.checkpoint_seconds", "HEDDLE_CHECKPOINT_SECONDS", asked,
+                       "must be a number of seconds, 0 or more", "Leave it out for the usual 10."}});
+  return seconds;
+}
+
 }  // namespace
 
 int dispatch(const std::vector<std::string>& arguments, const Commands& commands) {
@@ -78,6 +100,10 @@ int dispatch(const std::vector<std::string>& arguments, const Commands& commands
   } catch (const CLI::ParseError& error) {
     program.exit(error, std::cout, std::cerr);
     return exit_bad_input;
+  }
+  for (RunOptions* options : {&run_options, &weave_options, &friction_options}) {
+    options->cache = cache_folder();
+    options->checkpoint_interval = checkpoint_interval(options->checkpoint_interval);
   }
   if (run->parsed()) return commands.run(run_options);
   if (check->parsed()) return commands.check(check_options);

@@ -8,13 +8,16 @@
 #include <fmt/format.h>
 #include <tbb/global_control.h>
 
-#include "core/progress.h"
+#include "pipeline/cache.h"
 #include "pipeline/case.h"
-#include "pipeline/export_vtu.h"
+#include "pipeline/interrupt.h"
 #include "pipeline/orientation.h"
 #include "pipeline/report.h"
 #include "pipeline/run_folder.h"
+#include "pipeline/stage_keys.h"
+#include "pipeline/stage_store.h"
 #include "pipeline/stages.h"
+#include "pipeline/stamping_stage.h"
 
 namespace heddle::pipeline {
 
@@ -23,7 +26,6 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr double degrees = 180.0 / std::numbers::pi;
-constexpr int frames = 20;  // of the blank, over the stroke
 
 /// What the stages of one run have found so far.
 struct Findings {
@@ -33,19 +35,9 @@ struct Findings {
   std::optional<macroscale::StampingResult> stamping;
 };
 
-fs::path output_folder(const RunOptions& options, const Case& a_case) {
-  return options.output.empty() ? fs::path("out") / a_case.name : options.output;
-}
-
 std::unique_ptr<tbb::global_control> limit_threads(int threads) {
   if (threads <= 0) return nullptr;
   return std::make_unique<tbb::global_control>(tbb::global_control::max_allowed_parallelism, threads);
-}
-
-void refuse_resume(const RunOptions& options) {
-  if (options.resume)
-    throw InputError(
-        {{"run.resume", "--resume", "", "is not in this version", "Run the case again without it."}});
 }
 
 std::vector<double> contact_pressures() {
@@ -54,10 +46,29 @@ std::vector<double> contact_pressures() {
   return p;
 }
 
-void run_cell(const Case& a_case, RunFolder& folder, Findings& findings) {
+// One stage out of the cache, or run and put there.
+template <class Result, class Read, class Work>
+Result cached(RunFolder& folder, const Cache& cache, ChainStage stage, const Case& a_case, const Read& read,
+              const Work& work) {
+  return folder.stage(name_of(stage), [&](bool& reused) -> Result {
+    const std::string key = inputs_of(stage, a_case).key();
+    if (auto found = cache.find(key, read)) {
+      reused = true;
+      return std::move(*found);
+    }
+    Result result = work();
+    cache.store(key, bytes_of(result, key));
+    return result;
+  });
+}
+
+void run_cell(const Case& a_case, RunFolder& folder, const Cache& cache, Findings& findings) {
   if (!a_case.cell) return;
-  findings.cell = folder.stage("mesoscale", [&] { return mesoscale::analyse(*a_case.cell); });
-  findings.pictures = weave_pictures(*a_case.cell);
+  CellStage stage = cached<CellStage>(folder, cache, ChainStage::mesoscale, a_case, read_cell_stage, [&] {
+    return CellStage{mesoscale::analyse(*a_case.cell), weave_pictures(*a_case.cell)};
+  });
+  findings.cell = std::move(stage.result);
+  findings.pictures = std::move(stage.pictures);
   const mesoscale::FabricProperties& fabric = findings.cell->fabric;
   folder.write("mesoscale/fabric.json", fabric_json(fabric));
   folder.write("mesoscale/contact.csv",
@@ -70,63 +81,22 @@ void run_cell(const Case& a_case, RunFolder& folder, Findings& findings) {
       s.areal_density, 100.0 * s.crimp[0], degrees * s.gap_closure_angle, 100.0 * s.contact_area_fraction));
 }
 
-void run_friction(const Case& a_case, RunFolder& folder, Findings& findings) {
+void run_friction(const Case& a_case, RunFolder& folder, const Cache& cache, Findings& findings) {
   if (!a_case.friction) return;
-  findings.friction = folder.stage("friction", [&] {
-    return run_friction_stage(a_case, findings.cell ? &findings.cell->fabric : nullptr);
-  });
+  findings.friction = cached<FrictionStage>(
+      folder, cache, ChainStage::friction, a_case, read_friction_stage,
+      [&] { return run_friction_stage(a_case, findings.cell ? &findings.cell->fabric : nullptr); });
   if (!findings.friction->test.empty())
     folder.write("friction/friction_test.csv", friction_test_csv(findings.friction->test));
   folder.write("friction/curve.csv", curve_csv(findings.friction->curve));
   for (const std::string& note : findings.friction->notes) folder.log("friction: " + note);
 }
 
-// Writes frames of the blank and the history as the run goes: what ends it, they are there.
-class BlankSeries {
- public:
-  BlankSeries(const RunFolder& folder, int steps)
-      : folder_(folder), every_(std::max(1, steps / frames)), steps_(steps) {}
-
-  void add(int step, const macroscale::HistoryRow& row, const macroscale::BlankState& blank) {
-    if (step > 0) history_.push_back(row);
-    if (step % every_ != 0 && step != steps_) return;
-    folder_.write("macroscale/history.csv", history_csv(history_));
-    const std::string name = fmt::format("blank_{:04d}.vtu", step);
-    folder_.write("macroscale/" + name, vtu(mesh_of(blank)));
-    series_.push_back({blank.time, name});
-    folder_.write("macroscale/blank.pvd", pvd(series_));
-  }
-
- private:
-  const RunFolder& folder_;
-  int every_, steps_;
-  std::vector<SeriesFrame> series_;
-  std::vector<macroscale::HistoryRow> history_;
-};
-
-void run_stamping(const Case& a_case, RunFolder& folder, Findings& findings, bool quiet) {
+void run_stamping(const Case& a_case, RunFolder& folder, const Cache& cache, Findings& findings,
+                  StampingStageOptions options) {
   if (!a_case.stamping) return;
-  const int steps = a_case.stamping->process.steps;
-  Progress progress("stamping", steps, progress_style_of_standard_error(quiet), std::cerr);
-  BlankSeries series(folder, steps);
-  const auto observe = [&](int step, int, const macroscale::HistoryRow& row,
-                           const macroscale::BlankState& blank) {
-    series.add(step, row, blank);
-    const std::string note =
-        fmt::format("punch {:.1f} mm, {:.0f} N", 1e3 * row.punch_displacement, row.punch_force);
-    progress.update(step, note);
-    folder.log(fmt::format("stamping: step {}: {}, {} Newton iterations", step, note, row.newton_iterations));
-  };
-  findings.stamping = folder.stage("macroscale", [&] {
-    return macroscale::run_stamping(*a_case.stamping, findings.cell->fabric, findings.friction->model,
-                                    observe);
-  });
-  progress.finish();
-  folder.write("macroscale/history.csv", history_csv(findings.stamping->history));
-  if (!findings.stamping->summary.completed) {
-    folder.write("macroscale/blank_last.vtu", vtu(mesh_of(findings.stamping->final_state)));
-    folder.log("stamping stopped: " + findings.stamping->summary.failure);
-  }
+  findings.stamping = run_stamping_stage(*a_case.stamping, findings.cell->fabric, findings.friction->model,
+                                         folder, cache, std::move(options));
 }
 
 std::string description_of(const Case& a_case) {
@@ -194,16 +164,41 @@ ReportInput report_input(const Case& a_case, const Findings& findings) {
   return input;
 }
 
+// Advice that fits where it stopped.
+std::string advice_for(const macroscale::StampingSummary& summary, int steps) {
+  if (summary.steps == 0)
+    return "The binder did not close or the first step failed: check binder_force, the tools and the blank's "
+           "spacing.";
+  return fmt::format("Try smaller steps (--set process.steps={}), or look at the last state for a fold.",
+                     2 * steps);
+}
+
+// Hash of the inputs of each stage the case asks for.
+std::vector<std::pair<std::string, std::string>> stage_hashes(const Case& a_case) {
+  std::vector<std::pair<std::string, std::string>> hashes;
+  const auto add = [&](ChainStage stage) {
+    hashes.emplace_back(name_of(stage), inputs_of(stage, a_case).key());
+  };
+  if (a_case.cell) add(ChainStage::mesoscale);
+  if (a_case.friction) add(ChainStage::friction);
+  if (a_case.stamping) add(ChainStage::macroscale);
+  return hashes;
+}
+
 void write_findings(const Case& a_case, RunFolder& folder, const Findings& findings) {
   SummaryRecord record;
   if (findings.cell) record.cell = findings.cell->summary;
   if (findings.cell && a_case.stamping)
     record.contact_area_fraction_binder =
         findings.cell->fabric.contact.evaluate(mean_binder_pressure(*a_case.stamping), 0.0).fraction;
-  if (findings.stamping) record.stamping = findings.stamping->summary;
+  if (findings.stamping) {
+    record.stamping = findings.stamping->summary;
+    record.failure = findings.stamping->failure;
+    if (record.failure) record.advice = advice_for(*record.stamping, a_case.stamping->process.steps);
+  }
   folder.write("summary.json", summary_json(record));
   folder.write("report.html", report_html(report_input(a_case, findings)));
-  folder.close(a_case);
+  folder.close(a_case, stage_hashes(a_case));
 }
 
 void print_cell(const mesoscale::CellSummary& s) {
@@ -259,19 +254,11 @@ void print_attention(const ReportInput& input) {
       fmt::print("attention            {}\n", verdict.text);
 }
 
-// Advice that fits where it stopped.
-std::string advice_for(const macroscale::StampingSummary& summary, int steps) {
-  if (summary.steps == 0)
-    return "The binder did not close or the first step failed: check binder_force, the tools and the blank's "
-           "spacing.";
-  return fmt::format("Try smaller steps (--set process.steps={}), or look at the last state for a fold.",
-                     2 * steps);
-}
-
 enum class Part { all, weave, friction };
 
 Case read_part(const RunOptions& options, Part part) {
-  Case a_case = read_case(options.file, options.assignments);
+  Case a_case =
+      read_case(options.file, options.assignments, part == Part::all ? ToolFiles::load : ToolFiles::leave);
   if (part != Part::all) a_case.stamping.reset();
   if (part == Part::weave) a_case.friction.reset(), a_case.friction_test.reset();
   const bool empty = part == Part::weave ? !a_case.cell : part == Part::friction ? !a_case.friction : false;
@@ -284,43 +271,138 @@ Case read_part(const RunOptions& options, Part part) {
   return a_case;
 }
 
-int run_part(const RunOptions& options, Part part) {
-  refuse_resume(options);
-  const Case a_case = read_part(options, part);
-  const auto threads = limit_threads(options.threads);
-  if (part == Part::all && a_case.orientation_study) return run_orientation_study(options, a_case);
-  RunFolder folder(a_case, output_folder(options, a_case), options.force);
-  Findings findings;
-  for (const std::string& note : a_case.notes) folder.log("note: " + note);
-  run_cell(a_case, folder, findings);
-  run_friction(a_case, folder, findings);
-  run_stamping(a_case, folder, findings, options.quiet);
-  write_findings(a_case, folder, findings);
-
+void print_findings(const Case& a_case, const Findings& findings, Part part, const fs::path& folder) {
   if (findings.cell && part != Part::friction) print_cell(findings.cell->summary);
   if (findings.friction && !findings.stamping) print_friction(*findings.friction);
   if (findings.stamping) print_stamping(findings.stamping->summary);
   print_attention(report_input(a_case, findings));
-  fmt::print("results              {}\n", folder.path().string());
-  if (!findings.stamping || findings.stamping->summary.completed) return exit_done;
+  fmt::print("results              {}\n", folder.string());
+}
+
+// Whether a folder holds the finished results of exactly these inputs: the manifest is written last.
+bool holds_all_of(const fs::path& folder, const Case& a_case) {
+  for (const char* name : {"manifest.json", "summary.json", "report.html", "resolved.yaml"})
+    if (!fs::is_regular_file(folder / name)) return false;
+  if (read_file(folder / "resolved.yaml") != resolved_yaml(a_case.settings)) return false;
+  const std::string manifest = read_file(folder / "manifest.json");
+  for (const auto& [name, hash] : stage_hashes(a_case))
+    if (manifest.find(hash) == std::string::npos) return false;
+  return true;
+}
+
+// What --resume finds in the folder, said on standard error.
+struct Resumption {
+  Entry entry = Entry::fresh;
+  std::optional<StampingRecord> record;
+};
+
+Resumption look_for_resumption(const RunOptions& options, const Case& a_case, const fs::path& folder) {
+  Resumption found;
+  const auto say = [](const std::string& text) { std::cerr << "heddle: " << text << '\n'; };
+  if (!options.resume) {
+    if (fs::exists(folder / checkpoint_name) && !fs::exists(folder / "manifest.json"))
+      say(fmt::format(
+          "{} holds a run that was interrupted. It starts from the beginning; --resume would have gone on.",
+          folder.string()));
+    return found;
+  }
+  if (a_case.stamping) found.record = checkpoint_in(folder, inputs_of(ChainStage::macroscale, a_case));
+  const bool whole = !a_case.stamping || (found.record && found.record->complete());
+  if (whole && holds_all_of(folder, a_case)) {
+    found.entry = Entry::look;
+    say(folder.string() + " is complete: there is nothing left to do");
+  } else if (found.record) {
+    found.entry = Entry::resume;
+    say(fmt::format("going on from step {} of {}", found.record->at.step, found.record->steps));
+  } else {
+    say(folder.string() + " holds no checkpoint: the run starts from the beginning");
+  }
+  return found;
+}
+
+// A word as a shell takes it.
+std::string shell_word(const std::string& word) {
+  const std::string plain = "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789_-./=,:+%";
+  if (!word.empty() && word.find_first_not_of(plain) == std::string::npos) return word;
+  std::string quoted = "'";
+  for (const char c : word) quoted += c == '\'' ? std::string("'\\''") : std::string(1, c);
+  return quoted + "'";
+}
+
+std::string command_to_resume(const RunOptions& options) {
+  std::string command = "heddle run " + shell_word(options.file.string());
+  for (const std::string& assignment : options.assignments) command += " --set " + shell_word(assignment);
+  if (!options.output.empty()) command += " -o " + shell_word(options.output.string());
+  return command + " --resume";
+}
+
+RunEnding say_interrupted(const RunOptions& options, const RunFolder& folder, const Findings& findings,
+                          int steps) {
+  folder.write_log();
+  std::string reason =
+      "interrupted before the stamping had closed its binder; there is nothing to go on from";
+  if (findings.stamping && fs::exists(folder.path() / checkpoint_name))
+    reason = fmt::format("interrupted at step {} of {}", findings.stamping->summary.steps, steps);
+  std::cerr << fmt::format("heddle: {}; {}: {}\n", reason,
+                           findings.stamping ? "go on with" : "run it again, or", command_to_resume(options));
+  return {exit_failed, true, reason};
+}
+
+RunEnding run_part(const RunOptions& options, Part part) {
+  const Case a_case = read_part(options, part);
+  const auto threads = limit_threads(options.threads);
+  if (part == Part::all && a_case.orientation_study) return {run_orientation_study(options, a_case), false, ""};
+  const fs::path path = output_folder(options, a_case.name);
+  Resumption resumption = look_for_resumption(options, a_case, path);
+  RunFolder folder(a_case, path, options.force, resumption.entry);
+  const Cache cache(options.cache, [&](const std::string& line) { folder.log(line); });
+  const InterruptGuard guard;
+  Findings findings;
+  for (const std::string& note : a_case.notes) folder.log("note: " + note);
+  const int steps = a_case.stamping ? a_case.stamping->process.steps : 0;
+  const auto interrupted_before_stamping = [&] { return a_case.stamping && InterruptGuard::interrupted(); };
+  run_cell(a_case, folder, cache, findings);
+  if (interrupted_before_stamping()) return say_interrupted(options, folder, findings, steps);
+  run_friction(a_case, folder, cache, findings);
+  if (interrupted_before_stamping()) return say_interrupted(options, folder, findings, steps);
+  if (a_case.stamping)
+    run_stamping(a_case, folder, cache, findings,
+                 {.inputs = inputs_of(ChainStage::macroscale, a_case),
+                  .resume = std::move(resumption.record),
+                  .checkpoint_interval = options.checkpoint_interval,
+                  .stop = InterruptGuard::interrupted,
+                  .quiet = options.quiet});
+  if (findings.stamping && findings.stamping->summary.stopped)
+    return say_interrupted(options, folder, findings, steps);
+  write_findings(a_case, folder, findings);
+
+  if (options.print) print_findings(a_case, findings, part, folder.path());
+  if (!findings.stamping || findings.stamping->summary.completed) return {};
   std::cerr << fmt::format(
-      "heddle: stamping stopped: {}\n  {} holds the history, the last state (macroscale/blank_last.vtu) and "
-      "the report so far.\n  {}\n",
+      "heddle: stamping stopped: {}\n  {} holds the history, the last state (macroscale/blank_last.vtu), the "
+      "attempt that failed (blank_failed.vtu, and `failure` in summary.json) and the report so far.\n  {}\n",
       findings.stamping->summary.failure, folder.path().string(),
-      advice_for(findings.stamping->summary, a_case.stamping->process.steps));
-  return exit_failed;
+      advice_for(findings.stamping->summary, steps));
+  return {exit_failed, false, findings.stamping->summary.failure};
 }
 
 }  // namespace
 
-int run_case(const RunOptions& options) {
+fs::path output_folder(const RunOptions& options, const std::string& name) {
+  return options.output.empty() ? fs::path("out") / name : options.output;
+}
+
+RunEnding run_chain(const RunOptions& options) {
   return run_part(options, Part::all);
 }
+int run_case(const RunOptions& options) {
+  return run_part(options, Part::all).exit_code;
+}
 int weave_case(const RunOptions& options) {
-  return run_part(options, Part::weave);
+  return run_part(options, Part::weave).exit_code;
 }
 int friction_case(const RunOptions& options) {
-  return run_part(options, Part::friction);
+  return run_part(options, Part::friction).exit_code;
 }
 
 }  // namespace heddle::pipeline

@@ -20,6 +20,9 @@ struct RunOptions {
   bool resume = false;                        ///< go on from the last checkpoint
   bool force = false;                         ///< write into a folder that holds another case
   bool quiet = false;                         ///< no progress
+  std::filesystem::path cache = {};           ///< folder of stages done before; empty: every stage is run
+  double checkpoint_interval = 10.0;          ///< wall time between two checkpoints of a stamping [s]; 0: each step
+  bool print = true;                          ///< results on standard output
 };
 
 struct CheckOptions {
@@ -27,6 +30,18 @@ struct CheckOptions {
   std::vector<std::string> assignments = {};
   bool reference = false;  ///< print the page of all keys instead
 };
+
+/// How a run ended.
+struct RunEnding {
+  int exit_code = exit_done;
+  bool interrupted = false;  ///< by SIGINT or SIGTERM; exit_code is exit_failed
+  std::string reason = {};   ///< why it did not come to its end; "" if it did
+};
+/// The whole chain. @throws InputError  for bad input
+RunEnding run_chain(const RunOptions& options);
+
+/// Folder of the results: as asked for, else out/NAME.
+std::filesystem::path output_folder(const RunOptions& options, const std::string& name);
 
 /// Each returns an exit code, and throws InputError for bad input.
 int run_case(const RunOptions& options);       ///< the whole chain

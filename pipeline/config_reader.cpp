@@ -451,35 +451,6 @@ std::string list_text(std::vector<double>::const_iterator begin, std::vector<dou
   return "[" + text + "]";
 }
 
-std::string resolved_value(const Setting& setting) {
-  const Key& key = *setting.key;
-  switch (key.type) {
-    case KeyType::word:
-    case KeyType::text:
-    case KeyType::choice:
-      return quoted_where_needed(setting.text);
-    case KeyType::file:
-      return quoted_where_needed(resolved_file_name(setting));
-    case KeyType::integer:
-      return fmt::format("{:.0f}", setting.values[0]);
-    case KeyType::quantity:
-      return setting.text.empty() ? write_quantity(setting.values[0], key.unit)
-                                  : quoted_where_needed(setting.text);
-    case KeyType::pair:
-      return fmt::format("[{}, {}]", write_quantity(setting.values[0], key.unit),
-                         write_quantity(setting.values[1], key.unit));
-    case KeyType::list:
-      return list_text(setting.many.begin(), setting.many.end(), key.unit);
-    case KeyType::rows: {
-      std::string rows;
-      for (auto row = setting.many.begin(); row != setting.many.end(); row += key.columns)
-        rows += (rows.empty() ? "" : ", ") + list_text(row, row + key.columns, key.unit);
-      return "[" + rows + "]";
-    }
-  }
-  return "";
-}
-
 /// Lines "block:" that lead from the last path written to `path`, and the indentation of its last name.
 std::string open_blocks(std::vector<std::string>& open, const std::string& path) {
   std::vector<std::string> blocks;
@@ -595,6 +566,35 @@ void locate(Problems& problems, const ReadConfig& config) {
       if (setting != nullptr) problem.value = setting->written;
     }
   }
+}
+
+std::string resolved_value(const Setting& setting) {
+  const Key& key = *setting.key;
+  switch (key.type) {
+    case KeyType::word:
+    case KeyType::text:
+    case KeyType::choice:
+      return quoted_where_needed(setting.text);
+    case KeyType::file:
+      return quoted_where_needed(resolved_file_name(setting));
+    case KeyType::integer:
+      return fmt::format("{:.0f}", setting.values[0]);
+    case KeyType::quantity:
+      return setting.text.empty() ? write_quantity(setting.values[0], key.unit)
+                                  : quoted_where_needed(setting.text);
+    case KeyType::pair:
+      return fmt::format("[{}, {}]", write_quantity(setting.values[0], key.unit),
+                         write_quantity(setting.values[1], key.unit));
+    case KeyType::list:
+      return list_text(setting.many.begin(), setting.many.end(), key.unit);
+    case KeyType::rows: {
+      std::string rows;
+      for (auto row = setting.many.begin(); row != setting.many.end(); row += key.columns)
+        rows += (rows.empty() ? "" : ", ") + list_text(row, row + key.columns, key.unit);
+      return "[" + rows + "]";
+    }
+  }
+  return "";
 }
 
 std::string resolved_file_name(const Setting& setting) {

@@ -82,6 +82,9 @@ bool is_used(const Key& key, const Settings& settings);
 /// File keys name copies: "inputs/KEY.csv" (see write_resolved in case.h).
 std::string resolved_yaml(const Settings& settings);
 
+/// The value as resolved.yaml holds it, which reads back bit for bit.
+std::string resolved_value(const Setting& setting);
+
 /// Path of the copy of a file key's file, below the output folder.
 std::string resolved_file_name(const Setting& setting);
 

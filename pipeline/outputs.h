@@ -28,8 +28,9 @@ class OutputError : public std::runtime_error {
 
 /// Writes under a temporary name beside `path`, then renames: `path` holds the old bytes or all the new ones,
 /// even if the run is interrupted. Creates the folder if it is missing.
+/// @param durable  the bytes are on the disk before the name is: a power cut leaves the old file or the new one
 /// @throws OutputError  naming the path and the reason; the temporary file is removed
-void write_file(const std::filesystem::path& path, std::string_view bytes);
+void write_file(const std::filesystem::path& path, std::string_view bytes, bool durable = false);
 /// @throws OutputError  naming the path and the reason
 std::string read_file(const std::filesystem::path& path);
 
@@ -89,6 +90,8 @@ struct SummaryRecord {
   std::optional<mesoscale::CellSummary> cell = {};
   std::optional<double> contact_area_fraction_binder = {};  ///< phi under the binder's mean pressure [-]
   std::optional<macroscale::StampingSummary> stamping = {};
+  std::optional<macroscale::StampingFailure> failure = {};  ///< of a stamping that stopped
+  std::string advice = {};                                  ///< what to try after it
 };
 
 std::string summary_json(const SummaryRecord& record);

@@ -1,4 +1,5 @@
 #include <fmt/format.h>
+#include <unistd.h>
 
 #include <cerrno>
 #include <cstdio>
@@ -31,7 +32,7 @@ using File = std::unique_ptr<std::FILE, int (*)(std::FILE*)>;
 
 }  // namespace
 
-void write_file(const std::filesystem::path& path, std::string_view bytes) {
+void write_file(const std::filesystem::path& path, std::string_view bytes, bool durable) {
   std::error_code error;
   if (path.has_parent_path()) std::filesystem::create_directories(path.parent_path(), error);
   if (error) fail(path.parent_path(), "create the folder", error.value());
@@ -42,6 +43,8 @@ void write_file(const std::filesystem::path& path, std::string_view bytes) {
     fail(path, "open it for writing", errno);
   }
   if (std::fwrite(bytes.data(), 1, bytes.size(), file.get()) != bytes.size()) fail(path, "write it", errno);
+  if (durable && (std::fflush(file.get()) != 0 || fsync(fileno(file.get())) != 0))
+    fail(path, "write it", errno);
   // A full disk may show only when the buffer is emptied.
   if (std::fclose(file.release()) != 0) fail(path, "write it", errno);
   std::filesystem::rename(temporary.path, path, error);

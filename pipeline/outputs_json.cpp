@@ -95,6 +95,24 @@ Json stamping_json(const macroscale::StampingSummary& summary) {
   return out;
 }
 
+Json failure_json(const macroscale::StampingFailure& failure, const std::string& advice) {
+  Json worst = Json::array(), energies = Json::object();
+  for (const auto& unknown : failure.worst)
+    worst.push_back(
+        {{"name", unknown.name},
+         {"residual_N", unknown.residual},
+         {"position_mm", {1e3 * unknown.position[0], 1e3 * unknown.position[1], 1e3 * unknown.position[2]}}});
+  for (const auto& [name, value] : failure.energies) energies[name + "_J"] = value;
+  return {{"reason", failure.reason},
+          {"advice", advice},
+          {"step", failure.step},
+          {"time_s", failure.time},
+          {"time_step_s", failure.time_step},
+          {"worst", std::move(worst)},
+          {"energies", std::move(energies)},
+          {"not_finite", failure.not_finite}};
+}
+
 /// Names of one table of the fabric file: the key of its abscissa and of its ordinate.
 struct CurveKeys {
   const char* x;
@@ -317,6 +335,7 @@ std::string summary_json(const SummaryRecord& record) {
   Json root = Json::object();
   if (record.cell) root["mesoscale"] = cell_json(*record.cell, record.contact_area_fraction_binder);
   if (record.stamping) root["macroscale"] = stamping_json(*record.stamping);
+  if (record.failure) root["failure"] = failure_json(*record.failure, record.advice);
   return file_text(root);
 }
 

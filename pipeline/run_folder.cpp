@@ -5,10 +5,13 @@
 #include <chrono>
 #include <fstream>
 #include <thread>
+#include <utility>
 
 #include <fmt/format.h>
 
 #include "core/sparse_solver.h"
+#include "pipeline/stage_keys.h"
+#include "pipeline/stamping_record.h"
 
 namespace heddle::pipeline {
 
@@ -54,26 +57,26 @@ double wall_seconds() {
   return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
 }
 
-std::string processor_name() {
-  std::ifstream info("/proc/cpuinfo");
-  for (std::string line; std::getline(info, line);)
-    if (line.rfind("model name", 0) == 0) return line.substr(line.find(':') + 2);
-  return "unknown";
-}
-
 }  // namespace
 
-RunFolder::RunFolder(const Case& a_case, fs::path folder, bool force) : path_(std::move(folder)) {
+RunFolder::RunFolder(const Case& a_case, fs::path folder, bool force, Entry entry)
+    : path_(std::move(folder)), only_looks_(entry == Entry::look) {
   if (!force) demand_own_folder(a_case, path_);
+  if (only_looks_) return;
   try {
     fs::create_directories(path_);
   } catch (const fs::filesystem_error& error) {
     throw InputError({{"output.folder.create", "-o", path_.string(),
                        "cannot be created: " + error.code().message(), "Choose another folder with -o."}});
   }
-  for (const char* name : {"mesoscale", "friction", "macroscale", "inputs", "cases", "table.csv", "summary.json", "report.html",
-                           "manifest.json", "log.txt"})
+  // The manifest says that a run is complete: it goes first and comes last.
+  for (const char* name :
+       {"manifest.json", "mesoscale", "friction", "inputs", "cases", "table.csv", "summary.json", "report.html", "log.txt"})
     fs::remove_all(path_ / name);
+  if (fs::exists(path_ / "macroscale"))
+    for (const auto& file : fs::directory_iterator(path_ / "macroscale"))
+      if (entry != Entry::resume || file.path() != path_ / checkpoint_name) fs::remove_all(file.path());
+  if (entry == Entry::fresh) fs::remove_all(path_ / "macroscale");
   write_resolved(a_case, path_);
 }
 
@@ -81,23 +84,25 @@ RunFolder::Meter RunFolder::Meter::start() {
   return {wall_seconds(), cpu_seconds()};
 }
 
-StageRecord RunFolder::Meter::record(const std::string& name) const {
+StageRecord RunFolder::Meter::record(const std::string& name, bool reused) const {
   rusage usage{};
   getrusage(RUSAGE_SELF, &usage);
   return {name, wall_seconds() - wall, cpu_seconds() - cpu, 1024.0 * static_cast<double>(usage.ru_maxrss),
-          false};
+          reused};
 }
 
-void RunFolder::close(const Case& a_case) const {
+void RunFolder::close(const Case& a_case,
+                      const std::vector<std::pair<std::string, std::string>>& hashes) const {
   Manifest manifest;
   manifest.name = a_case.name;
   manifest.versions = {{"heddle", HEDDLE_VERSION}, {"compiler", __VERSION__}};
+  manifest.hashes = hashes;
   manifest.machine = {{"processor", processor_name()},
                       {"cores", fmt::format("{}", std::thread::hardware_concurrency())},
                       {"blas", blas_name()}};
   manifest.stages = stages_;
+  write_log();
   write("manifest.json", manifest_json(manifest));
-  write("log.txt", log_);
 }
 
 }  // namespace heddle::pipeline

@@ -1,0 +1,297 @@
+#include "macroscale/checkpoint.h"
+
+#include <algorithm>
+#include <array>
+#include <span>
+#include <type_traits>
+
+#include <fmt/format.h>
+
+namespace heddle::macroscale {
+
+namespace {
+
+// One name a member. A member added to HistoryRow must be added here too: the size tells.
+static_assert(sizeof(HistoryRow) == 26 * sizeof(double), "HistoryRow has changed: name its new members here");
+template <class Row, class Visit>
+void each_number(Row& r, const Visit& visit) {
+  visit("time", r.time);
+  visit("punch_displacement", r.punch_displacement);
+  visit("punch_force", r.punch_force);
+  visit("die_force", r.die_force);
+  visit("binder_force", r.binder_force);
+  visit("draw_in_max", r.draw_in_max);
+  visit("shear_angle_max", r.shear_angle_max);
+  visit("tow_strain_max", r.tow_strain_max);
+  visit("newton_iterations", r.newton_iterations);
+  visit("lag_iterations", r.lag_iterations);
+  visit("work_punch", r.work_punch);
+  visit("work_binder", r.work_binder);
+  visit("energy_tow", r.energy_tow);
+  visit("energy_shear", r.energy_shear);
+  visit("energy_bending", r.energy_bending);
+  visit("energy_twist", r.energy_twist);
+  visit("energy_compaction", r.energy_compaction);
+  visit("energy_kinetic", r.energy_kinetic);
+  visit("friction_punch", r.friction_punch);
+  visit("friction_die", r.friction_die);
+  visit("friction_binder", r.friction_binder);
+  visit("dissipation_shear_rate", r.dissipation_shear_rate);
+  visit("dissipation_artefact", r.dissipation_artefact);
+  visit("dissipation_numerical", r.dissipation_numerical);
+  visit("ledger_residual", r.ledger_residual);
+  visit("force_balance", r.force_balance);
+  visit("friction_work_outside", r.friction_work_outside);
+}
+
+void write_history(Hdf5Writer& file, const std::string& group, const std::vector<HistoryRow>& rows) {
+  // The first row's members name the columns; each column is gathered over all rows.
+  std::vector<std::string> names;
+  std::vector<std::vector<double>> columns;
+  HistoryRow any;
+  each_number(any, [&](const char* name, auto&) { names.emplace_back(name); });
+  columns.resize(names.size());
+  for (const HistoryRow& row : rows) {
+    std::size_t c = 0;
+    each_number(row, [&](const char*, auto value) { columns[c++].push_back(static_cast<double>(value)); });
+  }
+  for (std::size_t c = 0; c < names.size(); ++c) file.write(group + "/" + names[c], columns[c]);
+}
+
+std::vector<HistoryRow> read_history(const Hdf5Reader& file, const std::string& group) {
+  std::vector<HistoryRow> rows(file.doubles(group + "/time").size());
+  HistoryRow any;
+  std::size_t column = 0;
+  each_number(any, [&](const char* name, auto&) {
+    const std::vector<double> values = file.doubles(group + "/" + name);
+    if (values.size() != rows.size()) throw Hdf5Error(fmt::format("{}/{} has the wrong length", group, name));
+    for (std::size_t r = 0; r < rows.size(); ++r) {
+      std::size_t c = 0;
+      each_number(rows[r], [&](const char*, auto& member) {
+        if (c++ == column) member = static_cast<std::remove_reference_t<decltype(member)>>(values[r]);
+      });
+    }
+    ++column;
+  });
+  return rows;
+}
+
+template <class Number, std::size_t N>
+void write_rows(Hdf5Writer& file, const std::string& path, const std::vector<std::array<Number, N>>& rows) {
+  std::vector<Number> flat;
+  flat.reserve(N * rows.size());
+  for (const auto& row : rows) flat.insert(flat.end(), row.begin(), row.end());
+  file.write(path, std::span<const Number>(flat), {rows.size(), N});
+}
+
+template <std::size_t N, class Number>
+std::vector<std::array<Number, N>> rows_of(const std::vector<Number>& flat, const std::string& path) {
+  if (flat.size() % N != 0) throw Hdf5Error(fmt::format("{} has the wrong length", path));
+  std::vector<std::array<Number, N>> rows(flat.size() / N);
+  for (std::size_t k = 0; k < flat.size(); ++k) rows[k / N][k % N] = flat[k];
+  return rows;
+}
+
+template <std::size_t N>
+std::vector<std::array<double, N>> read_rows(const Hdf5Reader& file, const std::string& path) {
+  return rows_of<N>(file.doubles(path), path);
+}
+
+static_assert(sizeof(friction::ContactState) == 5 * sizeof(double),
+              "ContactState has changed: keep its new members");
+constexpr std::size_t memory_size = 5;
+
+std::vector<double> flat_memory(const State& state) {
+  std::vector<double> flat;
+  for (const auto& of_tool : state.memory)
+    for (const friction::ContactState& m : of_tool)
+      flat.insert(flat.end(), {m.slip, m.dwell, m.work_per_area, m.slip_resistance, m.film_temperature});
+  return flat;
+}
+
+void write_state(Hdf5Writer& file, const std::string& group, const State& state) {
+  file.write(group + "/time", state.time);
+  file.write(group + "/x", std::span(state.x.data(), static_cast<std::size_t>(state.x.size())));
+  file.write(group + "/v", std::span(state.v.data(), static_cast<std::size_t>(state.v.size())));
+  file.write(group + "/tool_z", state.tool_z);
+  file.write(group + "/corner_angle", state.corner_angle);
+  const std::size_t tools = state.memory.size(), nodes = tools > 0 ? state.memory[0].size() : 0;
+  file.write(group + "/contact_memory", flat_memory(state), {tools, nodes, memory_size});
+}
+
+State read_state(const Hdf5Reader& file, const std::string& group) {
+  const auto vector = [](const std::vector<double>& v) {
+    return Eigen::VectorXd(Eigen::Map<const Eigen::VectorXd>(v.data(), static_cast<Eigen::Index>(v.size())));
+  };
+  State state;
+  state.time = file.number(group + "/time");
+  state.x = vector(file.doubles(group + "/x"));
+  state.v = vector(file.doubles(group + "/v"));
+  state.tool_z = file.doubles(group + "/tool_z");
+  state.corner_angle = file.doubles(group + "/corner_angle");
+  const auto flat = read_rows<memory_size>(file, group + "/contact_memory");
+  const std::size_t tools = state.tool_z.size();
+  if (tools == 0 || flat.size() % tools != 0) throw Hdf5Error(group + "/contact_memory has the wrong length");
+  const std::size_t nodes = flat.size() / tools;
+  for (std::size_t k = 0; k < tools; ++k) {
+    auto& of_tool = state.memory.emplace_back();
+    for (std::size_t i = 0; i < nodes; ++i) {
+      const auto& m = flat[k * nodes + i];
+      of_tool.push_back({m[0], m[1], m[2], m[3], m[4]});
+    }
+  }
+  return state;
+}
+
+template <std::size_t N>
+std::vector<std::array<int, N>> read_index_rows(const Hdf5Reader& file, const std::string& path) {
+  return rows_of<N>(file.integers(path), path);
+}
+
+// What all instants of one blank share: its grid, its cells and its outline.
+void write_shared(Hdf5Writer& file, const std::string& group, const BlankState& blank) {
+  file.write(group + "/cells", std::vector<int>{blank.nu, blank.nv});
+  write_rows(file, group + "/grid", blank.grid);
+  write_rows(file, group + "/reference", blank.reference);
+  write_rows(file, group + "/quads", blank.quads);
+  std::vector<int> piece_quad;
+  std::vector<std::array<double, 8>> piece_corners;
+  for (const CellPiece& piece : blank.pieces) {
+    piece_quad.push_back(piece.quad);
+    auto& flat = piece_corners.emplace_back();
+    for (std::size_t k = 0; k < 8; ++k) flat[k] = piece.corners[k / 2][k % 2];
+  }
+  file.write(group + "/piece_quad", piece_quad);
+  write_rows(file, group + "/piece_corners", piece_corners);
+  write_rows(file, group + "/outline", blank.outline.outer);
+  file.write(group + "/holes", static_cast<int>(blank.outline.holes.size()));
+  for (std::size_t k = 0; k < blank.outline.holes.size(); ++k)
+    write_rows(file, fmt::format("{}/hole_{}", group, k), blank.outline.holes[k]);
+}
+
+BlankState read_shared(const Hdf5Reader& file, const std::string& group) {
+  BlankState blank;
+  const auto cells = file.integers(group + "/cells");
+  if (cells.size() != 2) throw Hdf5Error(group + "/cells has the wrong length");
+  blank.nu = cells[0];
+  blank.nv = cells[1];
+  blank.grid = read_index_rows<2>(file, group + "/grid");
+  blank.reference = read_rows<2>(file, group + "/reference");
+  blank.quads = read_index_rows<4>(file, group + "/quads");
+  const auto piece_quad = file.integers(group + "/piece_quad");
+  const auto piece_corners = read_rows<8>(file, group + "/piece_corners");
+  if (piece_quad.size() != piece_corners.size()) throw Hdf5Error(group + "/piece_corners has the wrong length");
+  for (std::size_t k = 0; k < piece_quad.size(); ++k) {
+    CellPiece piece{piece_quad[k], {}};
+    for (std::size_t c = 0; c < 8; ++c) piece.corners[c / 2][c % 2] = piece_corners[k][c];
+    blank.pieces.push_back(piece);
+  }
+  blank.outline.outer = read_rows<2>(file, group + "/outline");
+  for (int k = 0; k < file.integer(group + "/holes"); ++k)
+    blank.outline.holes.push_back(read_rows<2>(file, fmt::format("{}/hole_{}", group, k)));
+  return blank;
+}
+
+// The nodal fields of one instant that are plain numbers.
+template <class Blank, class Visit>
+void each_field(Blank& blank, const Visit& visit) {
+  visit("shear_angle", blank.shear_angle);
+  visit("pressure", blank.pressure);
+  visit("slip_speed", blank.slip_speed);
+  visit("friction_coefficient", blank.friction_coefficient);
+  visit("hersey", blank.hersey);
+}
+
+}  // namespace
+
+void write_instant(Hdf5Writer& file, const std::string& group, const BlankState& blank) {
+  file.write(group + "/time", blank.time);
+  file.write(group + "/punch_displacement", blank.punch_displacement);
+  file.write(group + "/binder_position", blank.binder_position);
+  write_rows(file, group + "/position", blank.position);
+  write_rows(file, group + "/velocity", blank.velocity);
+  write_rows(file, group + "/tow_strain", blank.tow_strain);
+  each_field(blank, [&](const char* name, const std::vector<double>& field) {
+    file.write(group + "/" + name, field);
+  });
+  std::vector<std::array<double, 6>> edge;
+  for (const EdgeState& e : blank.edge)
+    edge.push_back({e.reference[0], e.reference[1], e.position[0], e.position[1], e.position[2], e.draw_in});
+  write_rows(file, group + "/edge", edge);
+}
+
+BlankState read_instant(const Hdf5Reader& file, const std::string& group, const BlankState& shared) {
+  BlankState blank;
+  blank.nu = shared.nu;
+  blank.nv = shared.nv;
+  blank.grid = shared.grid;
+  blank.reference = shared.reference;
+  blank.quads = shared.quads;
+  blank.pieces = shared.pieces;
+  blank.outline = shared.outline;
+  blank.time = file.number(group + "/time");
+  blank.punch_displacement = file.number(group + "/punch_displacement");
+  blank.binder_position = file.number(group + "/binder_position");
+  blank.position = read_rows<3>(file, group + "/position");
+  blank.velocity = read_rows<3>(file, group + "/velocity");
+  blank.tow_strain = read_rows<2>(file, group + "/tow_strain");
+  const std::size_t nodes = shared.reference.size();
+  bool whole =
+      blank.position.size() == nodes && blank.velocity.size() == nodes && blank.tow_strain.size() == nodes;
+  each_field(blank, [&](const char* name, std::vector<double>& field) {
+    field = file.doubles(group + "/" + name);
+    whole &= field.size() == nodes;
+  });
+  if (!whole) throw Hdf5Error(group + " does not fit its blank");
+  for (const auto& e : read_rows<6>(file, group + "/edge"))
+    blank.edge.push_back({{e[0], e[1]}, {e[2], e[3], e[4]}, e[5]});
+  return blank;
+}
+
+void write(Hdf5Writer& file, const std::string& group, const StampingCheckpoint& checkpoint) {
+  file.write(group + "/step", checkpoint.step);
+  write_state(file, group + "/state", checkpoint.state);
+  write_history(file, group + "/row", {checkpoint.row});
+  write_history(file, group + "/history", checkpoint.history);
+  file.write(group + "/peak_force_balance", checkpoint.peak_force_balance);
+  file.write(group + "/falling_branch", checkpoint.falling_branch ? 1 : 0);
+  file.write(group + "/rejected_steps", checkpoint.rejected_steps);
+  file.write(group + "/newton_iterations", checkpoint.newton_iterations);
+  write_shared(file, group + "/blank", checkpoint.blank);
+  write_instant(file, group + "/blank/now", checkpoint.blank);
+}
+
+StampingCheckpoint read_checkpoint(const Hdf5Reader& file, const std::string& group) {
+  StampingCheckpoint checkpoint;
+  checkpoint.step = file.integer(group + "/step");
+  checkpoint.state = read_state(file, group + "/state");
+  const auto row = read_history(file, group + "/row");
+  if (row.size() != 1) throw Hdf5Error(group + "/row is no single row");
+  checkpoint.row = row[0];
+  checkpoint.history = read_history(file, group + "/history");
+  checkpoint.peak_force_balance = file.number(group + "/peak_force_balance");
+  checkpoint.falling_branch = file.integer(group + "/falling_branch") != 0;
+  checkpoint.rejected_steps = file.integer(group + "/rejected_steps");
+  checkpoint.newton_iterations = file.integer(group + "/newton_iterations");
+  const BlankState shared = read_shared(file, group + "/blank");
+  checkpoint.blank = read_instant(file, group + "/blank/now", shared);
+  return checkpoint;
+}
+
+std::string fault_of(const StampingCheckpoint& c, const Scene& scene, int steps) {
+  const std::size_t nodes = static_cast<std::size_t>(scene.blank.nodes()), tools = scene.tools.size();
+  const bool fits = c.state.x.size() == scene.unknowns() && c.state.v.size() == scene.unknowns() &&
+                    c.state.tool_z.size() == tools &&
+                    c.state.corner_angle.size() == 4 * scene.blank.quads.size() &&
+                    c.state.memory.size() == tools &&
+                    std::all_of(c.state.memory.begin(), c.state.memory.end(),
+                                [&](const auto& m) { return m.size() == nodes; });
+  if (!fits) return "its state is of another blank or other tools";
+  if (c.step < 0 || c.step > steps || c.history.size() != static_cast<std::size_t>(c.step))
+    return fmt::format("it stands at step {} with {} rows of history, and the run has {} steps", c.step,
+                       c.history.size(), steps);
+  if (c.blank.position.size() != nodes) return "its picture is of another blank";
+  return "";
+}
+
+}  // namespace heddle::macroscale

@@ -1,0 +1,39 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "core/hdf5_file.h"
+#include "macroscale/scene.h"
+#include "macroscale/stamping.h"
+
+namespace heddle::macroscale {
+
+/// All that a stamping hands from one step to the next: with it and the same specification a run goes on to
+/// the same bits. Friction loads (the lag) and contact stiffness follow from the state at the start of each
+/// step, so they are not here; the contact memory is in `state`.
+struct StampingCheckpoint {
+  int step = 0;                     ///< steps done; 0 = the binder has closed
+  State state;                      ///< after it
+  HistoryRow row;                   ///< after it; the cumulative columns go on from here
+  double peak_force_balance = 0.0;  ///< largest over the parts of all steps [N]
+  bool falling_branch = false;
+  int rejected_steps = 0, newton_iterations = 0;
+  std::vector<HistoryRow> history;  ///< one row a step done
+  BlankState blank;                 ///< after it, for files and pictures
+};
+
+/// Writes below a group ("/stamping"). Every number keeps its bits.
+void write(Hdf5Writer& file, const std::string& group, const StampingCheckpoint& checkpoint);
+/// @throws Hdf5Error  if something is missing or sizes contradict each other
+StampingCheckpoint read_checkpoint(const Hdf5Reader& file, const std::string& group);
+
+/// The blank of one instant without what all instants share (cells, reference, quads).
+void write_instant(Hdf5Writer& file, const std::string& group, const BlankState& blank);
+/// @param shared  any instant of the same blank
+BlankState read_instant(const Hdf5Reader& file, const std::string& group, const BlankState& shared);
+
+/// Fault that keeps a checkpoint from being of this scene, or "".
+std::string fault_of(const StampingCheckpoint& checkpoint, const Scene& scene, int steps);
+
+}  // namespace heddle::macroscale

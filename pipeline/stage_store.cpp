@@ -1,0 +1,289 @@
+#include "pipeline/stage_store.h"
+
+#include <array>
+#include <limits>
+#include <optional>
+#include <tuple>
+#include <variant>
+#include <vector>
+
+#include <fmt/format.h>
+
+#include "pipeline/outputs.h"
+
+namespace heddle::pipeline {
+
+namespace {
+
+// A struct of numbers is kept as one row: the same list of members writes and reads it. The sizes tell when a
+// member was added and must be named here too.
+
+static_assert(sizeof(mesoscale::CellSummary) == 12 * sizeof(double));
+template <class Summary>
+auto members(Summary& s) {
+  return std::tie(s.areal_density, s.crimp[0], s.crimp[1], s.crimp_angle[0], s.crimp_angle[1],
+                  s.gap_closure_angle, s.locking_angle, s.tow_fibre_volume_fraction,
+                  s.tow_solid_volume_fraction, s.contact_area_fraction, s.tow_section_area,
+                  s.consolidated_thickness);
+}
+
+static_assert(sizeof(friction::PowerLawFilm) == 6 * sizeof(double));
+template <class Film>
+auto film_members(Film& f) {
+  return std::tie(f.consistency, f.index, f.thickness, f.activation_energy, f.reference_temperature,
+                  f.rate_floor);
+}
+
+static_assert(sizeof(friction::CalibrationBox) == 6 * sizeof(double));
+template <class Box>
+auto box_members(Box& b) {
+  return std::tie(b.hersey_low, b.hersey_high, b.pressure_low, b.pressure_high, b.speed_low, b.speed_high);
+}
+
+static_assert(sizeof(FrictionCurveRow) == 7 * sizeof(double));
+template <class Row>
+auto curve_members(Row& r) {
+  return std::tie(r.tool_temperature, r.fabric_temperature, r.pressure, r.slip_speed, r.film_viscosity,
+                  r.hersey, r.friction_coefficient);
+}
+
+static_assert(sizeof(FrictionTestRow) ==
+              sizeof(std::string) + 7 * sizeof(double) + 2 * sizeof(std::optional<double>));
+template <class Row>
+auto test_members(Row& r) {
+  return std::tie(r.velocity, r.normal_force, r.tool_temperature, r.fabric_temperature, r.orientation,
+                  r.friction_coefficient, r.pull_force);
+}
+
+template <class Tie>
+std::vector<double> values_of(const Tie& tie) {
+  return std::apply([](const auto&... member) { return std::vector<double>{member...}; }, tie);
+}
+
+template <class Tie>
+void fill(Tie tie, const std::vector<double>& values, std::size_t row, const std::string& path) {
+  constexpr std::size_t n = std::tuple_size_v<Tie>;
+  if (values.size() < n * (row + 1)) throw Hdf5Error(path + " is too short");
+  std::size_t k = n * row;
+  std::apply([&](auto&... member) { ((member = values[k++]), ...); }, tie);
+}
+
+template <class Tie>
+void write_row(Hdf5Writer& file, const std::string& path, const Tie& tie) {
+  file.write(path, values_of(tie));
+}
+
+template <class Tie>
+void read_row(const Hdf5Reader& file, const std::string& path, Tie tie) {
+  fill(tie, file.doubles(path), 0, path);
+}
+
+void append(std::vector<double>& out, const std::vector<double>& more) {
+  out.insert(out.end(), more.begin(), more.end());
+}
+
+void begin(Hdf5Writer& file, const std::string& key, const char* kind) {
+  file.write("/key", key);
+  file.write("/kind", kind);
+}
+
+void demand_kind(const Hdf5Reader& file, const char* kind) {
+  if (file.text("/kind") != kind) throw Hdf5Error(fmt::format("is no result of the stage {}", kind));
+}
+
+void write_texts(Hdf5Writer& file, const std::string& group, const std::vector<std::string>& texts) {
+  file.write(group + "/count", static_cast<int>(texts.size()));
+  for (std::size_t k = 0; k < texts.size(); ++k) file.write(fmt::format("{}/{:06d}", group, k), texts[k]);
+}
+
+std::vector<std::string> read_texts(const Hdf5Reader& file, const std::string& group) {
+  std::vector<std::string> texts(static_cast<std::size_t>(file.integer(group + "/count")));
+  for (std::size_t k = 0; k < texts.size(); ++k) texts[k] = file.text(fmt::format("{}/{:06d}", group, k));
+  return texts;
+}
+
+// ---- pictures of the weave
+
+void write_pictures(Hdf5Writer& file, const WeavePictures& pictures) {
+  const auto& h = pictures.height;
+  file.write("/height/n", h.n);
+  file.write("/height/along_warp", std::span<const double>(h.along_warp));
+  file.write("/height/along_weft", std::span<const double>(h.along_weft));
+  file.write("/height/top", h.top);
+  file.write("/section/count", static_cast<int>(pictures.section.size()));
+  for (std::size_t k = 0; k < pictures.section.size(); ++k) {
+    const auto& outline = pictures.section[k];
+    std::vector<double> flat;
+    for (const auto& point : outline.points) flat.insert(flat.end(), point.begin(), point.end());
+    file.write(fmt::format("/section/{:06d}/points", k), std::span<const double>(flat),
+               {outline.points.size(), 2});
+    file.write(fmt::format("/section/{:06d}/warp", k), outline.tow == mesoscale::TowDirection::warp ? 1 : 0);
+  }
+  std::vector<double> corners;
+  for (const Triangle& triangle : pictures.tows)
+    for (const auto& corner : triangle) corners.insert(corners.end(), corner.begin(), corner.end());
+  file.write("/tows", std::span<const double>(corners), {pictures.tows.size(), 3, 3});
+}
+
+WeavePictures read_pictures(const Hdf5Reader& file) {
+  WeavePictures pictures;
+  auto& h = pictures.height;
+  h.n = file.integer("/height/n");
+  fill(std::tie(h.along_warp[0], h.along_warp[1]), file.doubles("/height/along_warp"), 0,
+       "/height/along_warp");
+  fill(std::tie(h.along_weft[0], h.along_weft[1]), file.doubles("/height/along_weft"), 0,
+       "/height/along_weft");
+  h.top = file.doubles("/height/top");
+  pictures.section.resize(static_cast<std::size_t>(file.integer("/section/count")));
+  for (std::size_t k = 0; k < pictures.section.size(); ++k) {
+    auto& outline = pictures.section[k];
+    const std::string path = fmt::format("/section/{:06d}/points", k);
+    const std::vector<double> flat = file.doubles(path);
+    outline.points.resize(flat.size() / 2);
+    for (std::size_t i = 0; i < outline.points.size(); ++i)
+      fill(std::tie(outline.points[i][0], outline.points[i][1]), flat, i, path);
+    outline.tow = file.integer(fmt::format("/section/{:06d}/warp", k)) != 0 ? mesoscale::TowDirection::warp
+                                                                            : mesoscale::TowDirection::weft;
+  }
+  const std::vector<double> corners = file.doubles("/tows");
+  pictures.tows.resize(corners.size() / 9);
+  for (std::size_t i = 0; i < 9 * pictures.tows.size(); ++i)
+    pictures.tows[i / 9][i / 3 % 3][i % 3] = corners[i];
+  return pictures;
+}
+
+// ---- the law
+
+std::vector<double> law_values(const friction::Law& law) {
+  struct Visitor {
+    std::vector<double> operator()(const friction::Coulomb& l) const { return {l.coefficient}; }
+    std::vector<double> operator()(const friction::HerseyPower& l) const { return {l.scale, l.exponent}; }
+    std::vector<double> operator()(const friction::HerseyLinear& l) const {
+      return {l.offset, l.slope, l.reference};
+    }
+  };
+  return std::visit(Visitor{}, law);
+}
+
+friction::Law law_of(int kind, const std::vector<double>& v) {
+  static_assert(std::variant_size_v<friction::Law> == 3, "a new law: keep its constants");
+  if (kind == 0 && v.size() == 1) return friction::Coulomb{v[0]};
+  if (kind == 1 && v.size() == 2) return friction::HerseyPower{v[0], v[1]};
+  if (kind == 2 && v.size() == 3) return friction::HerseyLinear{v[0], v[1], v[2]};
+  throw Hdf5Error("holds a friction law that is not known");
+}
+
+static_assert(sizeof(friction::Effects) == sizeof(std::optional<friction::ToolTemperatureShift>),
+              "a new effect: keep its parameters");
+
+void write_model(Hdf5Writer& file, const friction::Model& model) {
+  file.write("/law/kind", static_cast<int>(model.law.index()));
+  file.write("/law/constants", law_values(model.law));
+  write_row(file, "/film", film_members(model.film));
+  write_row(file, "/box", box_members(model.box));
+  if (const auto& shift = model.effects.tool_temperature_shift) {
+    file.write("/effects/tool_temperature_shift/numbers",
+               std::vector<double>{shift->slope, shift->reference});
+    file.write("/effects/tool_temperature_shift/form", static_cast<int>(shift->form));
+  }
+}
+
+friction::Model read_model(const Hdf5Reader& file) {
+  friction::Model model;
+  model.law = law_of(file.integer("/law/kind"), file.doubles("/law/constants"));
+  read_row(file, "/film", film_members(model.film));
+  read_row(file, "/box", box_members(model.box));
+  const std::string group = "/effects/tool_temperature_shift";
+  if (file.has(group + "/numbers")) {
+    friction::ToolTemperatureShift shift;
+    fill(std::tie(shift.slope, shift.reference), file.doubles(group + "/numbers"), 0, group);
+    shift.form = static_cast<friction::ToolTemperatureShift::Form>(file.integer(group + "/form"));
+    model.effects.tool_temperature_shift = shift;
+  }
+  return model;
+}
+
+// ---- rows
+
+/// What was not measured is kept as no number.
+double or_nothing(const std::optional<double>& value) {
+  return value.value_or(std::numeric_limits<double>::quiet_NaN());
+}
+std::optional<double> from_nothing(double value) {
+  return value == value ? std::optional(value) : std::nullopt;
+}
+
+void write_test(Hdf5Writer& file, const std::vector<FrictionTestRow>& rows) {
+  std::vector<std::string> names;
+  std::vector<double> values, measured;
+  for (const FrictionTestRow& row : rows) {
+    names.push_back(row.name);
+    append(values, values_of(test_members(row)));
+    append(measured, {or_nothing(row.measured_force), or_nothing(row.paper_force)});
+  }
+  write_texts(file, "/test/names", names);
+  file.write("/test/values", values);
+  file.write("/test/measured", measured);
+}
+
+std::vector<FrictionTestRow> read_test(const Hdf5Reader& file) {
+  const auto names = read_texts(file, "/test/names");
+  const auto values = file.doubles("/test/values"), measured = file.doubles("/test/measured");
+  std::vector<FrictionTestRow> rows(names.size());
+  for (std::size_t k = 0; k < rows.size(); ++k) {
+    rows[k].name = names[k];
+    fill(test_members(rows[k]), values, k, "/test/values");
+    double force = 0.0, paper = 0.0;
+    fill(std::tie(force, paper), measured, k, "/test/measured");
+    rows[k].measured_force = from_nothing(force);
+    rows[k].paper_force = from_nothing(paper);
+  }
+  return rows;
+}
+
+}  // namespace
+
+std::string bytes_of(const CellStage& stage, const std::string& key) {
+  Hdf5Writer file;
+  begin(file, key, "mesoscale");
+  write_row(file, "/summary", members(stage.result.summary));
+  file.write("/fabric", fabric_json(stage.result.fabric));
+  write_pictures(file, stage.pictures);
+  return file.finish();
+}
+
+CellStage read_cell_stage(const Hdf5Reader& file) {
+  demand_kind(file, "mesoscale");
+  CellStage stage;
+  read_row(file, "/summary", members(stage.result.summary));
+  stage.result.fabric = read_fabric_json(file.text("/fabric"), "the cache");
+  stage.pictures = read_pictures(file);
+  return stage;
+}
+
+std::string bytes_of(const FrictionStage& stage, const std::string& key) {
+  Hdf5Writer file;
+  begin(file, key, "friction");
+  write_model(file, stage.model);
+  write_test(file, stage.test);
+  std::vector<double> curve;
+  for (const FrictionCurveRow& row : stage.curve) append(curve, values_of(curve_members(row)));
+  file.write("/curve", curve);
+  write_texts(file, "/notes", stage.notes);
+  return file.finish();
+}
+
+FrictionStage read_friction_stage(const Hdf5Reader& file) {
+  demand_kind(file, "friction");
+  FrictionStage stage;
+  stage.model = read_model(file);
+  stage.test = read_test(file);
+  const std::vector<double> curve = file.doubles("/curve");
+  stage.curve.resize(curve.size() / 7);
+  for (std::size_t k = 0; k < stage.curve.size(); ++k)
+    fill(curve_members(stage.curve[k]), curve, k, "/curve");
+  stage.notes = read_texts(file, "/notes");
+  return stage;
+}
+
+}  // namespace heddle::pipeline

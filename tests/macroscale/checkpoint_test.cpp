@@ -1,0 +1,185 @@
+// Stopping, keeping and going on: whatever interrupts a run, it ends with the same bits.
+#include <catch2/catch.hpp>
+
+#include <algorithm>
+#include <cmath>
+#include <stdexcept>
+#include <string>
+#include <vector>
+
+#include "macroscale/checkpoint.h"
+#include "macroscale/stamping.h"
+#include "tests/macroscale/sample_fabric.h"
+
+using namespace heddle::macroscale;
+using heddle::Hdf5Reader;
+using heddle::Hdf5Writer;
+using heddle::test::make_fabric;
+
+namespace {
+
+StampingSpec small_case() {
+  StampingSpec spec;
+  spec.blank.spacing = 32e-3;  // 11 x 11 nodes
+  spec.process.stroke = 25e-3;
+  spec.process.time = 0.15;
+  spec.process.steps = 5;
+  return spec;
+}
+
+heddle::friction::Model coulomb() {
+  heddle::friction::Model model;
+  model.law = heddle::friction::Coulomb{0.3};
+  return model;
+}
+
+std::string bytes_of(const StampingCheckpoint& checkpoint) {
+  Hdf5Writer file;
+  write(file, "/stamping", checkpoint);
+  return file.finish();
+}
+
+StampingCheckpoint from(const std::string& bytes) {
+  return read_checkpoint(Hdf5Reader(bytes), "/stamping");
+}
+
+struct Kept {
+  std::vector<std::string> checkpoints;  ///< in the order in which they were offered
+  StampingResult result;
+};
+
+Kept run(const StampingSpec& spec, StampingControl control = {}, double table_end = 5e-4) {
+  Kept kept;
+  control.keep = [&](const StampingCheckpoint& c, bool) { kept.checkpoints.push_back(bytes_of(c)); };
+  kept.result =
+      run_stamping(spec, make_fabric({.rate_consistency = 5.0, .table_end = table_end}), coulomb(), control);
+  return kept;
+}
+
+}  // namespace
+
+TEST_CASE("a checkpoint keeps every bit of state, history, contact memory and picture",
+          "[macroscale][checkpoint]") {
+  StampingSpec spec = small_case();
+  spec.process.steps = 3;
+  const Kept kept = run(spec);
+  REQUIRE(kept.checkpoints.size() == 5);  // binder closed, three steps, the end
+  for (const std::string& bytes : kept.checkpoints) CHECK(bytes_of(from(bytes)) == bytes);
+  const StampingCheckpoint last = from(kept.checkpoints.back());
+  CHECK(last.step == 3);
+  CHECK(last.blank.position == kept.result.final_state.position);
+  CHECK(last.blank.pressure == kept.result.final_state.pressure);
+  CHECK(last.history.back().work_punch == kept.result.history.back().work_punch);
+  const auto& binder = last.state.memory[2];
+  CHECK(
+      std::any_of(binder.begin(), binder.end(), [](const auto& m) { return m.slip > 0.0 && m.dwell > 0.0; }));
+}
+
+TEST_CASE("a run that goes on from any of its checkpoints ends with the same bits",
+          "[macroscale][checkpoint]") {
+  const StampingSpec spec = small_case();
+  static const Kept whole = run(spec);
+  REQUIRE(whole.result.summary.completed);
+  const std::size_t at = GENERATE(std::size_t{0}, 3, 5);  // 5: nothing left to do
+  const StampingCheckpoint checkpoint = from(whole.checkpoints[at]);
+  CHECK(checkpoint.step == static_cast<int>(at));
+  std::vector<int> observed;
+  StampingControl control;
+  control.resume_from = &checkpoint;
+  control.observe = [&](int step, int, const HistoryRow&, const BlankState&) { observed.push_back(step); };
+  const Kept rest = run(spec, control);
+  CHECK(rest.checkpoints.back() == whole.checkpoints.back());
+  CHECK(rest.result.final_state.position == whole.result.final_state.position);
+  CHECK(rest.result.summary.newton_iterations == whole.result.summary.newton_iterations);
+  CHECK(rest.result.summary.energy_residual_max == whole.result.summary.energy_residual_max);
+  CHECK(observed.size() == 5 - at);
+}
+
+TEST_CASE("a run stopped between Newton iterations keeps its last whole step, and goes on to the same bits",
+          "[macroscale][checkpoint]") {
+  const StampingSpec spec = small_case();
+  int asked = 0;
+  StampingControl counted;
+  counted.stop = [&] { return ++asked, false; };
+  const Kept whole = run(spec, counted);
+  REQUIRE(asked > 30);
+  for (const double share : {0.3, 0.9}) {
+    int questions = 0;
+    StampingControl control;
+    control.stop = [&] { return ++questions >= share * asked; };
+    const Kept stopped = run(spec, control);
+    CHECK(stopped.result.summary.stopped);
+    CHECK_FALSE(stopped.result.summary.completed);
+    CHECK_FALSE(stopped.result.failure);
+    const StampingCheckpoint checkpoint = from(stopped.checkpoints.back());
+    CHECK(checkpoint.step < spec.process.steps);
+    CHECK(stopped.result.history.size() == static_cast<std::size_t>(checkpoint.step));
+    StampingControl resumed;
+    resumed.resume_from = &checkpoint;
+    CHECK(run(spec, resumed).checkpoints.back() == whole.checkpoints.back());
+  }
+  // Before the binder has closed there is nothing to keep.
+  StampingControl at_once;
+  at_once.stop = [] { return true; };
+  const Kept nothing = run(spec, at_once);
+  CHECK(nothing.result.summary.stopped);
+  CHECK(nothing.checkpoints.empty());
+}
+
+TEST_CASE("a stamping that fails says where its last attempt stood, and what stood out of balance",
+          "[macroscale][checkpoint]") {
+  const StampingSpec spec = small_case();
+  const Kept kept = run(spec, {}, 4e-5);  // the compaction table is too short
+  REQUIRE(kept.result.failure);
+  REQUIRE_FALSE(kept.checkpoints.empty());
+  const StampingFailure& failure = *kept.result.failure;
+  CHECK(failure.reason == kept.result.summary.failure);
+  CHECK(failure.step == from(kept.checkpoints.back()).step + 1);
+  CHECK(failure.time_step > 0.0);
+  const std::size_t nodes = kept.result.final_state.position.size();
+  REQUIRE(failure.blank.position.size() == nodes);
+  REQUIRE(failure.residual.size() == nodes);
+  CHECK(failure.blank.position != kept.result.final_state.position);
+  REQUIRE(failure.worst.size() == 10);
+  CHECK(std::is_sorted(failure.worst.begin(), failure.worst.end(),
+                       [](const auto& a, const auto& b) { return a.residual > b.residual; }));
+  CHECK(failure.energies.size() == 9);
+  CHECK(failure.not_finite.empty());
+  // The same failure again, from the checkpoint it left.
+  const StampingCheckpoint checkpoint = from(kept.checkpoints.back());
+  StampingControl control;
+  control.resume_from = &checkpoint;
+  const Kept again = run(spec, control, 4e-5);
+  CHECK(again.result.summary.failure == kept.result.summary.failure);
+  CHECK(again.result.final_state.position == kept.result.final_state.position);
+  CHECK(again.result.summary.newton_iterations == kept.result.summary.newton_iterations);
+}
+
+TEST_CASE("a Newton search that runs out of iterations leaves its worst nodes behind",
+          "[macroscale][checkpoint]") {
+  // A blank that cannot close: the binder pushes it through its own compaction table at once.
+  StampingSpec spec = small_case();
+  spec.process.binder_force = 1e7;
+  const Kept kept = run(spec);
+  REQUIRE(kept.result.failure);
+  CHECK(kept.result.failure->step == 0);
+  CHECK(kept.checkpoints.empty());
+  CHECK_THAT(kept.result.summary.failure, Catch::Contains("closing the binder"));
+  CHECK(kept.result.failure->residual.size() == kept.result.final_state.position.size());
+}
+
+TEST_CASE("a checkpoint of another blank or another number of steps is refused",
+          "[macroscale][checkpoint][wrong input]") {
+  StampingSpec spec = small_case();
+  spec.process.steps = 2;
+  const Kept kept = run(spec);
+  const StampingCheckpoint checkpoint = from(kept.checkpoints.back());
+  StampingControl control;
+  control.resume_from = &checkpoint;
+  StampingSpec finer = spec;
+  finer.blank.spacing = 25e-3;
+  CHECK_THROWS_WITH(run(finer, control), Catch::Contains("another blank"));
+  StampingSpec shorter = spec;
+  shorter.process.steps = 1;
+  CHECK_THROWS_WITH(run(shorter, control), Catch::Contains("step 2"));
+}
