@@ -57,12 +57,13 @@ class Session {
     std::vector<char*> pointers;
     for (std::string& argument : arguments) pointers.push_back(argument.data());
     gmsh::initialize(static_cast<int>(pointers.size()), pointers.data(), /*readConfigFiles=*/false);
-    for (const auto& [name, value] : {std::pair{"General.Terminal", 0.0},
-                                      {"General.NumThreads", 1.0},
-                                      {"General.AbortOnError", 0.0},
-                                      {"Mesh.Algorithm", 5.0},  // Delaunay: three times faster than frontal
-                                      {"Mesh.RandomSeed", 1.0},
-                                      {"Mesh.MeshSizeFromPoints", 0.0}})
+    for (const auto& [name, value] :
+         {std::pair{"General.Terminal", 0.0},
+          {"General.NumThreads", 1.0},
+          {"General.AbortOnError", 0.0},
+          {"Mesh.Algorithm", 5.0},  // Delaunay: 3.4 s for the punch, frontal 4.8 s
+          {"Mesh.RandomSeed", 1.0},
+          {"Mesh.MeshSizeFromPoints", 0.0}})
       gmsh::option::setNumber(name, value);
     gmsh::logger::start();
   }
@@ -243,7 +244,7 @@ std::string count_of(std::size_t n, const char* what) {
 
 double chord_error_bound(const SurfaceResolution& resolution, double radius) {
   const double edge = std::min(resolution.mesh_size, resolution.edge_angle * radius);
-  return edge * edge / (4.0 * radius);
+  return edge * edge / (2.0 * radius);
 }
 
 TriangleMesh step_surface(const std::filesystem::path& file, const SurfaceResolution& resolution) {
@@ -343,7 +344,8 @@ void write_step(const std::filesystem::path& script, int tool, const std::filesy
     with_gmsh(script, [&] {
       gmsh::open(script.string());
       gmsh::model::occ::synchronize();
-      if (tags(3).empty()) throw CadError("file", "must make a solid", "The script knows tools 1 to 3.");
+      if (tags(2).empty())
+        throw CadError("file", "must make a solid or a face", "The script knows tools 1 to 3.");
       gmsh::write(file.string());
     });
   }

@@ -24,16 +24,17 @@ class CadError : public std::runtime_error {
   std::string key_, way_out_;
 };
 
-/// How fine a CAD surface is cut into triangles. Both lengths are targets: single edges are up to 1.6 times
-/// as long (measured on the shipped tools).
+/// How fine a CAD surface is cut into triangles. Lengths are targets: single edges become up to twice as long
+/// (1.95 times on the shipped punch).
 struct SurfaceResolution {
   double mesh_size = 2e-3;                      ///< edges on curved faces and their borders [m]
-  double edge_angle = std::numbers::pi / 15.0;  ///< edges are at most this times the radius [rad]
+  double edge_angle = std::numbers::pi / 12.0;  ///< edges are at most this times the radius [rad]
   std::size_t most_triangles = 2000000;
 };
 
-/// Distance between facets and a surface of the smallest radius `radius` that step_surface() stays below:
-/// L^2 / (4 R) with L = min(mesh_size, edge_angle R), twice the L^2 / (8 R) of a chord of length L [m].
+/// Distance between facets and a surface of radius `radius` that step_surface() stays below: L^2 / (2 R) with
+/// L = min(mesh_size, edge_angle R), the chord error (2 L)^2 / (8 R) of an edge twice as long as asked for
+/// [m].
 double chord_error_bound(const SurfaceResolution& resolution, double radius);
 
 /// Surface of the solids in a STEP file, or of its faces if it holds no solid. Closed where the solid is;

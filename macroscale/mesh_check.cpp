@@ -359,6 +359,14 @@ void examine_crossings(const TriangleMesh& mesh, const Surface& surface, Finding
         "Unite the bodies in the CAD program, or coarsen a surface that folds over itself.");
 }
 
+/// Whether a closed mesh without crossings has its normals outwards. CGAL looks at how pieces lie in each
+/// other and so takes the space outside for a solid too; the sum of the pieces' volumes (times six) tells
+/// them apart.
+bool bounds_a_solid(const Surface& surface, const std::vector<double>& six, bool several) {
+  const double sum = std::accumulate(six.begin(), six.end(), 0.0);
+  return sum > 0.0 && (!several || pmp::does_bound_a_volume(surface));
+}
+
 /// Needs sound edges and vertices, and no crossings.
 void examine_sides(const TriangleMesh& mesh, const Surface& surface, const std::vector<EdgeUse>& uses,
                    Findings& f) {
@@ -367,7 +375,7 @@ void examine_sides(const TriangleMesh& mesh, const Surface& surface, const std::
   const std::vector<double> six = volumes(mesh, label);
   const std::size_t count = static_cast<std::size_t>(
       std::count_if(label.begin(), label.end(), [&, t = 0](int l) mutable { return l == t++; }));
-  if (count == 1 ? six[label[0]] > 0.0 : pmp::does_bound_a_volume(surface)) return;
+  if (bounds_a_solid(surface, six, count > 1)) return;
   Tally inside_out;
   for (std::size_t t = 0; t < label.size(); ++t) {
     if (label[t] == static_cast<int>(t) && six[t] < 0.0) inside_out.add(centroid(mesh, mesh.triangles[t]));
@@ -590,14 +598,14 @@ void turn_outward(Repair& r) {
   const std::vector<int> label = pieces(r.mesh, uses);
   const std::vector<double> six = volumes(r.mesh, label);
   const bool several = std::any_of(label.begin(), label.end(), [&](int l) { return l != label[0]; });
-  if (!several) {
-    if (six[label[0]] >= 0.0) return;
+  Surface surface = surface_of(r.mesh);
+  if (several && pmp::does_self_intersect(surface)) return;
+  if (bounds_a_solid(surface, six, several)) return;
+  if (!several || pmp::does_bound_a_volume(surface)) {  // right among themselves, inside out as a whole
     for (Triangle& t : r.mesh.triangles) turn(t);
     r.turned += r.mesh.triangles.size();
     return;
   }
-  Surface surface = surface_of(r.mesh);
-  if (pmp::does_self_intersect(surface) || pmp::does_bound_a_volume(surface)) return;
   pmp::orient_to_bound_a_volume(surface);
   for (const Surface::Face_index face : surface.faces()) {
     // The first half-edge of a face still says which way round it now runs.

@@ -447,7 +447,7 @@ Problems check_numbers(const ToolFile& tool, const Expectation& expected) {
   demand(std::isfinite(tool.mesh_size) && tool.mesh_size > 0.0, "mesh_size", tool.mesh_size, "must be > 0",
          "2 mm suits a part of 0.3 m.");
   demand(tool.edge_angle > 0.0 && tool.edge_angle <= 0.5 * std::numbers::pi, "edge_angle", tool.edge_angle,
-         "must satisfy 0 < angle <= 90 deg", "12 deg keeps facets within 1 % of the radius.");
+         "must satisfy 0 < angle <= 90 deg", "15 deg keeps facets within 4 % of the radius.");
   return problems;
 }
 

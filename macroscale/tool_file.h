@@ -15,7 +15,7 @@ struct ToolFile {
   std::filesystem::path file;  ///< by extension: .step .stp, .stl (text or binary), .obj
   double length_unit = 1e-3;   ///< of the file's coordinates [m]; a STEP file must state the same
   double mesh_size = 2e-3;     ///< target of the largest edge on curved faces, for STEP [m]
-  double edge_angle = std::numbers::pi / 15.0;  ///< edges at most this times the radius, for STEP [rad]
+  double edge_angle = std::numbers::pi / 12.0;  ///< edges at most this times the radius, for STEP [rad]
   TopologyRule topology = TopologyRule::closed;
   bool repair = false;  ///< KEY.repair: apply repaired() before the mesh is checked
 };
