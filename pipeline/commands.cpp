@@ -10,6 +10,7 @@
 
 #include "pipeline/cache.h"
 #include "pipeline/case.h"
+#include "pipeline/export_vtu.h"
 #include "pipeline/interrupt.h"
 #include "pipeline/orientation.h"
 #include "pipeline/report.h"

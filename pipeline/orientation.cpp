@@ -15,6 +15,7 @@
 #include "pipeline/report_figures.h"
 #include "pipeline/report_style.h"
 #include "pipeline/run_folder.h"
+#include "pipeline/stage_keys.h"
 #include "pipeline/stages.h"
 
 namespace heddle::pipeline {
@@ -211,7 +212,7 @@ OrientedBlank stamp(const Case& a_case, double angle, const mesoscale::FabricPro
     progress.update(step, fmt::format("punch {:.1f} mm, {:.0f} N", 1e3 * row.punch_displacement, row.punch_force));
   };
   blank.result = folder.stage("blank_" + blank.id,
-                              [&] { return macroscale::run_stamping(spec, fabric, model, observe); });
+                              [&](bool&) { return macroscale::run_stamping(spec, fabric, model, observe); });
   progress.finish();
   const std::string place = "cases/" + blank.id + "/";
   SummaryRecord record;
@@ -362,12 +363,11 @@ std::string orientation_html(const OrientationFindings& findings) {
 }
 
 int run_orientation_study(const RunOptions& options, const Case& a_case) {
-  RunFolder folder(a_case, options.output.empty() ? std::filesystem::path("out") / a_case.name : options.output,
-                   options.force);
-  const auto cell = folder.stage("mesoscale", [&] { return mesoscale::analyse(*a_case.cell); });
+  RunFolder folder(a_case, output_folder(options, a_case.name), options.force);
+  const auto cell = folder.stage("mesoscale", [&](bool&) { return mesoscale::analyse(*a_case.cell); });
   folder.write("mesoscale/fabric.json", fabric_json(cell.fabric));
   const FrictionStage friction =
-      folder.stage("friction", [&] { return run_friction_stage(a_case, &cell.fabric); });
+      folder.stage("friction", [&](bool&) { return run_friction_stage(a_case, &cell.fabric); });
 
   OrientationFindings findings;
   findings.name = a_case.name;
@@ -378,7 +378,7 @@ int run_orientation_study(const RunOptions& options, const Case& a_case) {
     findings.blanks.push_back(stamp(a_case, angle, cell.fabric, friction.model, folder, options.quiet));
     folder.write("table.csv", orientation_table_csv(findings.blanks));
   }
-  folder.stage("friction_samples", [&] {
+  folder.stage("friction_samples", [&](bool&) {
     for (const double angle : a_case.orientation_study->friction)
       findings.samples.push_back(pull(a_case, angle, cell.fabric, friction.model));
     return 0;
@@ -395,7 +395,7 @@ int run_orientation_study(const RunOptions& options, const Case& a_case) {
   findings.notes.insert(findings.notes.end(), friction.notes.begin(), friction.notes.end());
   findings.notes.insert(findings.notes.end(), a_case.notes.begin(), a_case.notes.end());
   folder.write("report.html", orientation_html(findings));
-  folder.close(a_case);
+  folder.close(a_case, {{"study", case_hash(a_case)}});
 
   print(findings);
   fmt::print("results                 {}\n", folder.path().string());
