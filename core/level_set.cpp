@@ -17,6 +17,8 @@
 #include <tuple>
 #include <utility>
 
+#include "core/triangle_walk.h"
+
 namespace heddle {
 
 using openvdb::Coord;
@@ -56,7 +58,8 @@ int block_of(double x, double voxel) {
 
 class DistanceSampler {
  public:
-  DistanceSampler(const std::function<double(double, double, double)>& distance, double voxel, double half_width)
+  DistanceSampler(const std::function<double(double, double, double)>& distance, double voxel,
+                  double half_width)
       : distance_(distance), voxel_(voxel), half_width_(half_width) {}
 
   // The leaf at `origin`, or null if no voxel of it lies in the band.
@@ -115,8 +118,8 @@ class MeshInVoxels {
   double scale_;
 };
 
-// Which side of an oriented surface a place is on, by the normals of its faces, edges and corners: at an edge the
-// sum of both faces, at a corner the sum weighted by angle. Source: Baerentzen & Aanaes 2005.
+// Which side of an oriented surface a place is on, by the normals of its faces, edges and corners: at an edge
+// the sum of both faces, at a corner the sum weighted by angle. Source: Baerentzen & Aanaes 2005.
 class SideOfSheet {
  public:
   explicit SideOfSheet(const TriangleMesh& mesh) : mesh_(mesh), corner_(mesh.vertices.size(), Vec3d(0.0)) {
@@ -139,8 +142,9 @@ class SideOfSheet {
         corner_[static_cast<std::size_t>(a)] += normal * std::atan2(e.cross(f).length(), e.dot(f));
       }
     }
-    std::sort(sides.begin(), sides.end(),
-              [](const Side& a, const Side& b) { return std::tie(a.edge, a.place) < std::tie(b.edge, b.place); });
+    std::sort(sides.begin(), sides.end(), [](const Side& a, const Side& b) {
+      return std::tie(a.edge, a.place) < std::tie(b.edge, b.place);
+    });
     edge_.assign(3 * mesh.triangles.size(), Vec3d(0.0));
     for (std::size_t first = 0, end = 0; first < sides.size(); first = end) {
       Vec3d sum(0.0);
@@ -210,8 +214,9 @@ void spread_sides(Leaf& leaf, float beyond) {
     if (!leaf.isValueOn(n)) leaf.setValueOff(n, side[n] < 0 ? -beyond : beyond);
 }
 
-// Empty blocks in the box of a sheet's band take the side of the nearest block that has one, layer by layer; where
-// neighbours disagree (round the sheet's edge) they are inside, which is an error for who asks and never a silence.
+// Empty blocks in the box of a sheet's band take the side of the nearest block that has one, layer by layer;
+// where neighbours disagree (round the sheet's edge) they are inside, which is an error for who asks and
+// never a silence.
 void fill_blocks(FloatGrid& grid, float beyond) {
   std::vector<Coord> leaves;
   CoordBBox box;
@@ -254,21 +259,37 @@ void fill_blocks(FloatGrid& grid, float beyond) {
   } while (!layer.empty());
 }
 
-// Signs for an unsigned band about a sheet.
-void sign_sheet(FloatGrid& grid, const openvdb::Int32Grid& nearest, const TriangleMesh& mesh, double voxel) {
-  const SideOfSheet sheet(mesh);
+// meshToVolume carries the nearest triangle from voxel to voxel as its band grows, which misses nearer ones,
+// worst where triangles are smaller than voxels. So it gives the band, its inner side and a triangle to start
+// from, and the distances are taken anew. A sheet has no inner side but that of its normals.
+void measure(FloatGrid& grid, const openvdb::Int32Grid& triangles, const TriangleMesh& mesh, double voxel,
+             Sides sides) {
+  const TriangleWalk walk(mesh);
+  const auto sheet = sides == Sides::open ? std::make_unique<const SideOfSheet>(mesh) : nullptr;
   const float beyond = grid.background();
   openvdb::tree::LeafManager<FloatGrid::TreeType> leaves(grid.tree());
   leaves.foreach ([&](Leaf& leaf, std::size_t) {
-    const auto triangles = nearest.getConstUnsafeAccessor();
+    const auto near = triangles.getConstUnsafeAccessor();
+    TriangleWalk::Nearest nearest{
+        0.0, -1};  // of this leaf alone: the result must not depend on who works on which
     for (auto value = leaf.beginValueOn(); value; ++value) {
       const Coord c = value.getCoord();
-      const auto triangle = static_cast<std::size_t>(triangles.getValue(c));
-      if (sheet.behind(c.asVec3d() * voxel, triangle)) value.setValue(-*value);
+      const Vec3d at = c.asVec3d() * voxel;
+      const Eigen::Vector3d q(at.x(), at.y(), at.z());
+      TriangleWalk::Nearest start = walk.at(std::max(near.getValue(c), 0), q);
+      if (nearest.triangle >= 0) {
+        const TriangleWalk::Nearest last = walk.at(nearest.triangle, q);
+        if (last.squared < start.squared) start = last;
+      }
+      nearest = walk.from(start, q);
+      const bool inside =
+          sheet ? sheet->behind(at, static_cast<std::size_t>(nearest.triangle)) : *value < 0.0f;
+      const auto d = static_cast<float>(std::sqrt(nearest.squared));
+      value.setValue(inside ? -d : d);
     }
-    spread_sides(leaf, beyond);
+    if (sheet) spread_sides(leaf, beyond);
   });
-  fill_blocks(grid, beyond);
+  if (sheet) fill_blocks(grid, beyond);
 }
 
 }  // namespace
@@ -318,8 +339,8 @@ void LevelSet::read(std::array<int, 3> first, int count, float* values) const {
     }
 }
 
-LevelSet level_set_from_distance(const std::function<double(double, double, double)>& distance, const Box& body,
-                                 double voxel, double half_width_voxels) {
+LevelSet level_set_from_distance(const std::function<double(double, double, double)>& distance,
+                                 const Box& body, double voxel, double half_width_voxels) {
   check_sizes(voxel, half_width_voxels);
   const double half_width = voxel * half_width_voxels;
   // Two voxels more than the band: the outermost blocks must come out empty or positive at their rim.
@@ -343,7 +364,8 @@ LevelSet level_set_from_distance(const std::function<double(double, double, doub
     if (leaf) grid->tree().addLeaf(leaf.release());
   const CoordBBox band = grid->evalActiveVoxelBoundingBox();
   for (int c = 0; c < 3 && !band.empty(); ++c)
-    if (band.min()[c] <= low[c] * LevelSet::block || band.max()[c] >= high[c] * LevelSet::block + LevelSet::block - 1)
+    if (band.min()[c] <= low[c] * LevelSet::block ||
+        band.max()[c] >= high[c] * LevelSet::block + LevelSet::block - 1)
       throw std::invalid_argument("the body of a level set reaches out of the box given for it");
   openvdb::tools::signedFloodFill(grid->tree());
   return LevelSet(std::make_shared<const LevelSet::Grid>(LevelSet::Grid{grid, voxel, half_width}));
@@ -356,19 +378,17 @@ LevelSet level_set_from_mesh(const TriangleMesh& mesh, double voxel, double half
       if (vertex < 0 || static_cast<std::size_t>(vertex) >= mesh.vertices.size())
         throw std::invalid_argument("a triangle names a vertex that does not exist");
   start_openvdb();
-  const auto width = static_cast<float>(half_width_voxels);
+  if (mesh.triangles.empty()) throw std::invalid_argument("a level set needs a mesh with triangles");
+  // A voxel more than asked for: the band is found by distances that may be a little too large.
+  const auto width = static_cast<float>(half_width_voxels + 1.0);
   const auto transform = openvdb::math::Transform::createLinearTransform(voxel);
-  const MeshInVoxels in_voxels(mesh, voxel);
-  FloatGrid::Ptr grid;
-  if (sides == Sides::closed) {
-    grid = openvdb::tools::meshToVolume<FloatGrid>(in_voxels, *transform, width, width);
-  } else {
-    openvdb::Int32Grid nearest;
-    grid = openvdb::tools::meshToVolume<FloatGrid>(in_voxels, *transform, width, width,
-                                                   openvdb::tools::UNSIGNED_DISTANCE_FIELD, &nearest);
-    sign_sheet(*grid, nearest, mesh, voxel);
-  }
-  return LevelSet(std::make_shared<const LevelSet::Grid>(LevelSet::Grid{grid, voxel, voxel * half_width_voxels}));
+  const int flags = sides == Sides::open ? openvdb::tools::UNSIGNED_DISTANCE_FIELD : 0;
+  openvdb::Int32Grid triangles;
+  FloatGrid::Ptr grid = openvdb::tools::meshToVolume<FloatGrid>(MeshInVoxels(mesh, voxel), *transform, width,
+                                                                width, flags, &triangles);
+  measure(*grid, triangles, mesh, voxel, sides);
+  return LevelSet(
+      std::make_shared<const LevelSet::Grid>(LevelSet::Grid{grid, voxel, voxel * half_width_voxels}));
 }
 
 double volume(const LevelSet& body) {
@@ -391,7 +411,8 @@ Overlap overlap(const LevelSet& a, const LevelSet& b) {
   const Count count = tbb::parallel_reduce(  // a number and a maximum: the order does not matter
       tbb::blocked_range<int>(both.min().x(), both.max().x() + 1), Count{},
       [&](const tbb::blocked_range<int>& range, Count sum) {
-        const auto in_a = a.grid().grid->getConstUnsafeAccessor(), in_b = b.grid().grid->getConstUnsafeAccessor();
+        const auto in_a = a.grid().grid->getConstUnsafeAccessor(),
+                   in_b = b.grid().grid->getConstUnsafeAccessor();
         for (int i = range.begin(); i < range.end(); ++i)
           for (int j = both.min().y(); j <= both.max().y(); ++j)
             for (int k = both.min().z(); k <= both.max().z(); ++k) {
@@ -402,7 +423,9 @@ Overlap overlap(const LevelSet& a, const LevelSet& b) {
             }
         return sum;
       },
-      [](Count x, const Count& y) { return Count{x.voxels + y.voxels, std::max(x.depth, y.depth)}; });
+      [](Count x, const Count& y) {
+        return Count{x.voxels + y.voxels, std::max(x.depth, y.depth)};
+      });
   found.voxels = count.voxels;
   found.depth = count.depth;
   found.volume = static_cast<double>(count.voxels) * a.voxel() * a.voxel() * a.voxel();

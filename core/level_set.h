@@ -14,9 +14,9 @@ struct Box {
   std::array<double, 3> low{}, high{};  ///< corners [m]
 };
 
-/// Signed distance to a surface (negative inside the body) on the voxels of a narrow band, one sign beyond it.
-/// Voxel (i, j, k) stands at voxel() * (i, j, k). A handle to something that never changes: cheap to copy, safe
-/// to read from any thread. The storage is OpenVDB's; no header but this one knows.
+/// Signed distance to a surface (negative inside the body) on the voxels of a narrow band, one sign beyond
+/// it. Voxel (i, j, k) stands at voxel() * (i, j, k). A handle to something that never changes: cheap to
+/// copy, safe to read from any thread. The storage is OpenVDB's; no header but this one knows.
 class LevelSet {
  public:
   struct Grid;
@@ -31,7 +31,7 @@ class LevelSet {
   static constexpr int block = 8;
   std::vector<std::array<int, 3>> blocks() const;
   /// Values [m] of count^3 voxels from `first` on, the last index running fastest; beyond the band
-  /// +-half_width().
+  /// half_width() or a little more, with the sign of the side.
   void read(std::array<int, 3> first, int count, float* values) const;
 
   const Grid& grid() const { return *grid_; }
@@ -41,23 +41,23 @@ class LevelSet {
 };
 
 /// Samples a TRUE signed distance (slope 1; an implicit function such as f/t - 1 is none) straight into the
-/// blocks of the band, in parallel, with the same result for any number of threads. The distance must be right
-/// within half_width_voxels + 14 voxels of the surface and not too small beyond.
+/// blocks of the band, in parallel, with the same result for any number of threads. The distance must be
+/// right within half_width_voxels + 14 voxels of the surface and not too small beyond.
 /// @param body   box that holds the body; the band beyond it is added here, so that it is never cut
 /// @param voxel  [m]
 /// @throws std::invalid_argument  if voxel or width are not positive, or if the body reaches out of its box
-LevelSet level_set_from_distance(const std::function<double(double, double, double)>& distance, const Box& body,
-                                 double voxel, double half_width_voxels);
+LevelSet level_set_from_distance(const std::function<double(double, double, double)>& distance,
+                                 const Box& body, double voxel, double half_width_voxels);
 
 /// What lies inside a mesh.
 enum class Sides {
   closed,  ///< the mesh bounds a body, whatever its orientation
-  /// A sheet with an edge: the tool is on the side its normals point away from. Beyond its edge a sheet has no
-  /// side to speak of: it must reach past whatever it is to meet.
+  /// A sheet with an edge: the tool is on the side its normals point away from. Beyond its edge a sheet has
+  /// no side to speak of: it must reach past whatever it is to meet.
   open
 };
 
-/// Distance to a mesh.
+/// Distance to a mesh: to its nearest triangle, up to the rounding of a float.
 /// @throws std::invalid_argument  if voxel or width are not positive, or an index does not exist
 LevelSet level_set_from_mesh(const TriangleMesh& mesh, double voxel, double half_width_voxels,
                              Sides sides = Sides::closed);

@@ -30,7 +30,7 @@ Scene stamping_scene(const StampingSpec& spec, const mesoscale::FabricProperties
   scene.fabric = &fabric;
   scene.friction = &friction;
   const double half = 0.5 * fabric.thickness;
-  const TouchingTools tools = touching_tools(spec, fabric.thickness, SolveOptions{}.largest_increment);
+  const TouchingTools tools = touching_tools(spec);
   const double pressure = spec.process.binder_force / binder_area(spec);
   const double closed = half - approach_at(fabric.compaction.curves().front(), pressure);
   scene.tools = {{Role::punch, raised(tools.punch, half), Motion::driven, 0.0, 0.0},
@@ -366,7 +366,7 @@ StampingResult run_stamping(const StampingSpec& spec, const mesoscale::FabricPro
   const Problems of_fabric = mesoscale::check(fabric);
   problems.insert(problems.end(), of_fabric.begin(), of_fabric.end());
   if (!problems.empty()) throw InputError(std::move(problems));
-  const StampingSpec loaded = with_tools_loaded(spec);
+  const StampingSpec loaded = with_tools_loaded(spec, fabric.thickness);
   return Run(loaded, fabric, friction, control).result();
 }
 

@@ -39,11 +39,13 @@ struct BlankSpec {
 /// The blank's edge about the punch axis, whatever its shape. Circles are polygons within 2e-5 of the radius.
 Outline outline_of(const BlankSpec& blank);
 
+struct LoadedToolFile;
+
 /// A tool given by a file instead of by its shape's numbers.
 struct ToolFileSpec {
   ToolFile source;
-  double voxel = 1e-3;                       ///< of the distance field [m]
-  std::shared_ptr<const LoadedTool> loaded;  ///< what the file holds, once with_tools_loaded has read it
+  double voxel = 1e-3;                           ///< of the distance field [m]
+  std::shared_ptr<const LoadedToolFile> loaded;  ///< what the file holds, once with_tools_loaded has read it
 };
 
 struct PunchSpec {                   ///< hemisphere with its apex down and a cylinder above, or a file

@@ -10,7 +10,6 @@
 #include <stdexcept>
 #include <utility>
 
-
 namespace heddle::macroscale {
 
 namespace {
@@ -283,34 +282,40 @@ bool beyond_band(const ToolBand& band, const Vector3d& x) {
 
 double estimated_memory(const TriangleMesh& mesh, const ToolBandSpec& spec) {
   const MeshSize size = size_of(mesh);
-  // Blocks that a band of this width cuts: as thick as the band and, on average, one and a half blocks more.
+  // Blocks that a band of this width cuts: as thick as the band and, on average over all directions, one and
+  // a half blocks more.
   const double side = block * spec.voxel;
-  const auto blocks_cut = [&](double half_width) { return size.area * (2.0 * half_width + 1.5 * side) / (side * side * side); };
+  const auto blocks_cut = [&](double half_width) {
+    return size.area * (2.0 * half_width + 1.5 * side) / (side * side * side);
+  };
   const double leaf = block * block * block * sizeof(float) + 256.0, brick = 1000.0 * sizeof(float);
-  // The level set comes with the index of the nearest triangle while it is built.
-  const double level_set = blocks_cut(spec.voxel * level_set_half_width(spec)) * leaf;
+  // Both are reached a little further than promised. While the level set is built there is as much again.
+  const double level_set = leaf * blocks_cut(spec.voxel * (level_set_half_width(spec) + 2.0));
+  const double bricks = brick * blocks_cut(spec.half_width + 2.0 * spec.voxel);
   const Eigen::Array3d across = (size.high - size.low).array() / side + 4.0;
-  return std::max(2.0 * level_set, level_set + blocks_cut(spec.half_width) * brick) +
-         across.prod() * sizeof(std::int32_t) + 100.0 * static_cast<double>(mesh.triangles.size());
+  constexpr double per_triangle = 300.0;  // tree of boxes, list of edges
+  return 2.0 * level_set + bricks + across.prod() * sizeof(std::int32_t) +
+         per_triangle * static_cast<double>(mesh.triangles.size());
 }
 
 Problems check(const TriangleMesh& mesh, const ToolBandSpec& spec, const std::string& key) {
   Problems problems;
   if (mesh.triangles.empty())
-    problems.push_back({"tool.empty", key, "0 triangles", "a tool must have a surface", "Check the tool's file."});
+    problems.push_back(
+        {"tool.empty", key, "0 triangles", "a tool must have a surface", "Check the tool's file."});
   if (!(spec.voxel > 0.0) || !std::isfinite(spec.voxel))
     problems.push_back({"tool.voxel.range", key + ".voxel", millimetres(spec.voxel), "must satisfy voxel > 0",
                         "Write a twentieth of the smallest radius that touches the fabric."});
   if (!(spec.half_width > 0.0) || !std::isfinite(spec.half_width))
-    problems.push_back({"tool.band.range", key + ".band", millimetres(spec.half_width),
-                        "must satisfy band half width > 0",
-                        "Write the tool's step plus the fabric's thickness plus the largest Newton increment."});
+    problems.push_back(
+        {"tool.band.range", key + ".band", millimetres(spec.half_width), "must satisfy band half width > 0",
+         "Write the tool's step plus the fabric's thickness plus the largest Newton increment."});
   if (!problems.empty()) return problems;
   for (std::size_t n = 0; n < mesh.vertices.size(); ++n)
     for (double c : mesh.vertices[n])
       if (!std::isfinite(c)) {
-        problems.push_back({"tool.mesh.finite", key, fmt::format("vertex {}", n), "every coordinate must be finite",
-                            "Check the tool's file."});
+        problems.push_back({"tool.mesh.finite", key, fmt::format("vertex {}", n),
+                            "every coordinate must be finite", "Check the tool's file."});
         return problems;
       }
   for (const auto& t : mesh.triangles)
@@ -329,13 +334,12 @@ Problems check(const TriangleMesh& mesh, const ToolBandSpec& spec, const std::st
   }
   const double memory = estimated_memory(mesh, spec);
   if (memory > spec.memory_limit) {
-    // Blocks go with the square of 1 / voxel at least; a voxel that would just do, on the safe side.
+    // Memory grows at least with the square of 1 / voxel: a voxel on the safe side.
     const double voxel = spec.voxel * std::sqrt(memory / spec.memory_limit) * 1.1;
-    problems.push_back(
-        {"tool.band.memory", key + ".voxel", millimetres(spec.voxel),
-         fmt::format("the band must fit into {:.0f} MB; this one needs about {:.0f} MB", 1e-6 * spec.memory_limit,
-                     1e-6 * memory),
-         fmt::format("Write a voxel of {} or more, or a narrower band.", millimetres(voxel))});
+    problems.push_back({"tool.band.memory", key + ".voxel", millimetres(spec.voxel),
+                        fmt::format("the band must fit into {:.0f} MB; this one needs about {:.0f} MB",
+                                    1e-6 * spec.memory_limit, 1e-6 * memory),
+                        fmt::format("Write a voxel of {} or more, or a narrower band.", millimetres(voxel))});
   }
   return problems;
 }
@@ -343,14 +347,15 @@ Problems check(const TriangleMesh& mesh, const ToolBandSpec& spec, const std::st
 ToolBand tool_band(const TriangleMesh& mesh, const ToolBandSpec& spec, const std::string& key) {
   Problems problems = check(mesh, spec, key);
   if (!problems.empty()) throw InputError(std::move(problems));
-  ToolBand band(level_set_from_mesh(mesh, spec.voxel, level_set_half_width(spec), spec.sides), spec.half_width,
-                spec.sides);
+  ToolBand band(level_set_from_mesh(mesh, spec.voxel, level_set_half_width(spec), spec.sides),
+                spec.half_width, spec.sides);
   if (band.depth() < spec.half_width)
-    throw InputError({{"tool.thin", key, fmt::format("{} at its thickest", millimetres(2.0 * band.depth())),
-                       fmt::format("a tool must be thicker than twice its band's half width, {}: a node pressed "
-                                   "through it would count as free",
-                                   millimetres(2.0 * spec.half_width)),
-                       "Make the tool a thicker solid, or shorten the steps that ask for this band."}});
+    throw InputError(
+        {{"tool.thin", key, fmt::format("{} at its thickest", millimetres(2.0 * band.depth())),
+          fmt::format("a tool must be thicker than twice its band's half width, {}: a node pressed "
+                      "through it would count as free",
+                      millimetres(2.0 * spec.half_width)),
+          "Make the tool a thicker solid, or shorten the steps that ask for this band."}});
   return band;
 }
 

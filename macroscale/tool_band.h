@@ -13,8 +13,8 @@ namespace heddle::macroscale {
 
 /// How a tool's mesh becomes a band.
 struct ToolBandSpec {
-  double voxel = 0.5e-3;        ///< [m]; a twentieth of the smallest radius that matters keeps the error small
-  double half_width = 3e-3;     ///< distances are right up to here on both sides [m]; see required_half_width
+  double voxel = 0.5e-3;     ///< [m]; a twentieth of the smallest radius that matters keeps the error small
+  double half_width = 3e-3;  ///< distances are right up to here on both sides [m]; see required_half_width
   Sides sides = Sides::closed;  ///< whether the mesh bounds a body or is a sheet
   double memory_limit = 400e6;  ///< [byte], of the whole build
 };
@@ -22,8 +22,8 @@ struct ToolBandSpec {
 /// Half width that a band needs so that no node leaves it unnoticed between two positions the solver accepts:
 ///     tool step + thickness + largest increment.
 /// A node that was accepted lies no deeper than half the fabric's thickness; within one step the tool comes
-/// nearer by its step, and a trial of Newton's method moves the node by one increment at most. The other half of
-/// the thickness is what contact needs on the outer side, and reserve on the inner one.
+/// nearer by its step, and a trial of Newton's method moves the node by one increment at most. The other half
+/// of the thickness is what contact needs on the outer side, and reserve on the inner one.
 /// @param tool_step          largest motion of the tool in a time step [m]
 /// @param thickness          of the stress-free fabric [m]
 /// @param largest_increment  of a node in one Newton iteration [m]
@@ -32,10 +32,11 @@ double required_half_width(double tool_step, double thickness, double largest_in
 /// Signed distance to a tool's surface, twice piecewise differentiable, near the surface only.
 ///
 /// The samples of a level set are turned into the coefficients of a tensor-product quadratic B-spline by
-/// c = f - (second differences of f) / 8, so that the spline takes up quadratics exactly (no bias by curvature).
-/// Its gradient is continuous everywhere in the band and its Hessian constant in no voxel but bounded; both are
-/// exact derivatives of the value. The gradient is NOT made unit: a contact force p(d) grad d is then the exact
-/// gradient of the contact energy. | |grad d| - 1 | is of the order of the distance's own error over a voxel.
+/// c = f - (second differences of f) / 8, so that the spline takes up quadratics exactly (no bias by
+/// curvature). Its gradient is continuous everywhere in the band and its Hessian constant in no voxel but
+/// bounded; both are exact derivatives of the value. The gradient is NOT made unit: a contact force p(d) grad
+/// d is then the exact gradient of the contact energy. | |grad d| - 1 | is of the order of the distance's own
+/// error over a voxel.
 ///
 /// Coefficients stand in bricks of 8^3 voxels with a rim of one, so that the 27 of a point lie in one brick.
 /// Nothing changes after construction: safe to read from any thread.
@@ -74,17 +75,18 @@ class ToolBand {
 
 /// Distance (positive outside), its gradient and Hessian; x in the tool's own frame [m].
 ///
-/// Outside, beyond the band: a lower bound of the distance, at least half_width; normal unit, curvature zero. No
-/// contact can arise there as long as half_width is more than half the fabric's thickness.
-/// Inside, beyond the band: the distance is -infinity, so that an energy built on it is infinite and a line
-/// search takes a shorter step. Never "no contact".
+/// Outside, beyond the band: a lower bound of the distance, at least half_width; normal unit, curvature zero.
+/// No contact can arise there as long as half_width is more than half the fabric's thickness. Inside, beyond
+/// the band: the distance is -infinity, so that an energy built on it is infinite and a line search takes a
+/// shorter step. Never "no contact".
 Distance evaluate(const ToolBand& band, const Eigen::Vector3d& x);
 
-/// Whether x lies so deep inside the tool that the band does not know its distance: an error of the caller, who
-/// knows node and tool. NaN counts as such.
+/// Whether x lies so deep inside the tool that the band does not know its distance: an error of the caller,
+/// who knows node and tool. NaN counts as such.
 bool beyond_band(const ToolBand& band, const Eigen::Vector3d& x);
 
-/// Faults of a mesh and a specification that would keep a band from being built or trusted, without building it.
+/// Faults of a mesh and a specification that would keep a band from being built or trusted, without building
+/// it.
 /// @param key  dotted path of the tool in the configuration, for instance "tools.punch"
 Problems check(const TriangleMesh& mesh, const ToolBandSpec& spec, const std::string& key);
 

@@ -1,17 +1,15 @@
 #include "macroscale/tool_set.h"
 
 #include <algorithm>
-#include <functional>
+#include <cmath>
 #include <limits>
-#include <numbers>
 
 #include <fmt/format.h>
 #include <tbb/blocked_range.h>
 #include <tbb/parallel_reduce.h>
 
 #include "macroscale/blank.h"
-#include "macroscale/mesh_distance.h"
-#include "macroscale/tool_band.h"
+#include "macroscale/solve.h"
 
 namespace heddle::macroscale {
 
@@ -90,33 +88,17 @@ double tool_step(const StampingSpec& spec) {
   return spec.process.stroke / spec.process.steps;
 }
 
-// A tool that touches z = 0 as something to measure against: exactly, without a band.
-class Solid {
- public:
-  Solid(const StampingSpec& spec, Role role) : shape_(shape_of_numbers(spec, role)) {
-    const auto& file = file_of(spec, role);
-    if (!file) return;
-    mesh_ = &file->loaded->mesh;
-    lift_ = lift_to_touch(*mesh_, role);
-  }
+Shape touching(const StampingSpec& spec, Role role) {
+  const auto& file = file_of(spec, role);
+  if (!file) return shape_of_numbers(spec, role);
+  return BandShape{file->loaded->band, Vector3d(0.0, 0.0, lift_to_touch(file->loaded->tool.mesh, role))};
+}
 
-  const TriangleMesh* mesh() const { return mesh_; }
-  double lift() const { return lift_; }
-
-  void prepare() {
-    if (mesh_ && !measure_) measure_ = std::make_unique<MeshDistance>(*mesh_);
-  }
-  double distance_to(const Vector3d& x) const {
-    if (measure_) return measure_->signed_distance({x.x(), x.y(), x.z() - lift_});
-    return distance(shape_, x).distance;
-  }
-
- private:
-  Shape shape_;
-  const TriangleMesh* mesh_ = nullptr;
-  double lift_ = 0.0;
-  std::unique_ptr<MeshDistance> measure_;
-};
+// Empty for a tool of numbers.
+const TriangleMesh* mesh_of(const StampingSpec& spec, Role role) {
+  const auto& file = file_of(spec, role);
+  return file ? &file->loaded->tool.mesh : nullptr;
+}
 
 struct Nearest {
   double distance = std::numeric_limits<double>::infinity();  ///< [m]
@@ -128,23 +110,34 @@ Nearest nearer(const Nearest& a, const Nearest& b) {
   return b.distance < a.distance ? b : a;
 }
 
+// A tool at its place before the stroke.
+struct Placed {
+  const TriangleMesh* mesh;
+  double lift;  ///< of the mesh's origin [m]
+  Shape shape;
+};
+
+Placed placed(const StampingSpec& spec, Role role, double base) {
+  const TriangleMesh* mesh = mesh_of(spec, role);
+  return {mesh, base + (mesh ? lift_to_touch(*mesh, role) : 0.0), raised(touching(spec, role), base)};
+}
+
 // Where the vertices of one tool come nearest to another while the punch goes down. `sign` is -1 where the
 // vertices are the punch's, +1 where they belong to the tool it passes.
-Nearest nearest_on_stroke(const Solid& of_vertices, double base_of_vertices, const Solid& other,
-                          double base_of_other, double stroke, double sign) {
+Nearest nearest_on_stroke(const Placed& of_vertices, const Placed& other, double stroke, double sign) {
   constexpr int positions = 8;
-  const auto& vertices = of_vertices.mesh()->vertices;
+  const auto& vertices = of_vertices.mesh->vertices;
   Nearest nearest;
   for (int k = 0; k <= positions; ++k) {
     const double travel = stroke * k / positions;
-    const double shift = of_vertices.lift() + base_of_vertices - base_of_other + sign * travel;
     nearest = tbb::parallel_deterministic_reduce(
         tbb::blocked_range<std::size_t>(0, vertices.size(), 1024), nearest,
         [&](const tbb::blocked_range<std::size_t>& range, Nearest found) {
           for (std::size_t i = range.begin(); i != range.end(); ++i) {
-            const Vector3d x(vertices[i][0], vertices[i][1], vertices[i][2] + shift);
-            const double d = other.distance_to(x);
-            if (d < found.distance) found = {d, travel, x + Vector3d(0.0, 0.0, base_of_other)};
+            const auto& v = vertices[i];
+            const Vector3d x(v[0], v[1], v[2] + of_vertices.lift + sign * travel);
+            const double d = distance(other.shape, x).distance;
+            if (d < found.distance) found = {d, travel, x};
           }
           return found;
         },
@@ -155,24 +148,21 @@ Nearest nearest_on_stroke(const Solid& of_vertices, double base_of_vertices, con
 
 // Punch and the tool it passes, at the heights at which they stand on the stress-free fabric.
 Problems check_passage(const StampingSpec& spec, Role other, double thickness) {
-  Solid punch(spec, Role::punch), passed(spec, other);
-  if (!punch.mesh() && !passed.mesh()) return {};  // said by check(StampingSpec)
-  const double half = 0.5 * thickness, base = other == Role::die ? -half : half;
+  const double half = 0.5 * thickness;
+  const Placed punch = placed(spec, Role::punch, half),
+               passed = placed(spec, other, other == Role::die ? -half : half);
+  if (!punch.mesh && !passed.mesh) return {};  // said by check(StampingSpec)
   Nearest nearest;
-  if (punch.mesh()) {
-    passed.prepare();
-    nearest = nearest_on_stroke(punch, half, passed, base, spec.process.stroke, -1.0);
-  }
-  if (passed.mesh()) {
-    punch.prepare();
-    nearest = nearer(nearest, nearest_on_stroke(passed, base, punch, half, spec.process.stroke, +1.0));
-  }
+  if (punch.mesh) nearest = nearest_on_stroke(punch, passed, spec.process.stroke, -1.0);
+  if (passed.mesh) nearest = nearer(nearest, nearest_on_stroke(passed, punch, spec.process.stroke, +1.0));
   if (nearest.distance >= half) return {};
-  return {{fmt::format("tools.{}.passage", name_of(other)), key_of(other), "",
-           nearest.distance < 0.0
+  std::string rule = "reaches deep into the punch";  // beyond what the distance field knows
+  if (std::isfinite(nearest.distance))
+    rule = nearest.distance < 0.0
                ? fmt::format("cuts {:.3g} mm into the punch", -1e3 * nearest.distance)
                : fmt::format("leaves {:.3g} mm beside the punch, less than half the fabric's {:.4g} mm",
-                             1e3 * nearest.distance, 1e3 * thickness),
+                             1e3 * nearest.distance, 1e3 * thickness);
+  return {{fmt::format("tools.{}.passage", name_of(other)), key_of(other), "", rule,
            fmt::format(
                "At a stroke of {:.4g} mm near ({:.4g}, {:.4g}, {:.4g}) mm: check the files' units and places "
                "in x and y, or shorten the stroke.",
@@ -187,14 +177,19 @@ Problems check_hold(const StampingSpec& spec) {
 
 }  // namespace
 
-StampingSpec with_tools_loaded(StampingSpec spec) {
+StampingSpec with_tools_loaded(StampingSpec spec, double thickness) {
   Problems problems;
+  const double half_width = required_half_width(tool_step(spec), thickness, SolveOptions{}.largest_increment);
   for (const Role role : roles) {
     auto& file = file_of(spec, role);
     if (!file || file->loaded) continue;
     const Expectation expected{key_of(role), extent(outline_of(spec.blank)), spec.process.stroke};
     try {
-      file->loaded = std::make_shared<const LoadedTool>(load_tool(file->source, expected));
+      LoadedTool tool = load_tool(file->source, expected);
+      const ToolBandSpec band{.voxel = file->voxel, .half_width = half_width};
+      auto field = std::make_shared<const ToolBand>(tool_band(tool.mesh, band, key_of(role)));
+      file->loaded =
+          std::make_shared<const LoadedToolFile>(LoadedToolFile{std::move(tool), std::move(field)});
     } catch (const InputError& error) {
       problems.insert(problems.end(), error.problems().begin(), error.problems().end());
     }
@@ -210,24 +205,8 @@ Problems check_tools(const StampingSpec& spec, double thickness) {
   return problems;
 }
 
-TouchingTools touching_tools(const StampingSpec& spec, double thickness, double largest_increment) {
-  TouchingTools tools;
-  const auto make = [&](Role role) -> Shape {
-    const auto& file = file_of(spec, role);
-    if (!file) return shape_of_numbers(spec, role);
-    const LoadedTool& loaded = *file->loaded;
-    const ToolBandSpec band{.voxel = file->voxel,
-                            .half_width = required_half_width(tool_step(spec), thickness, largest_increment)};
-    tools.notes.push_back(fmt::format("{}: {} triangles from {}{}{}", name_of(role),
-                                      loaded.mesh.triangles.size(), file->source.file.filename().string(),
-                                      loaded.repairs.empty() ? "" : "; ", loaded.repairs));
-    return BandShape{std::make_shared<const ToolBand>(tool_band(loaded.mesh, band, key_of(role))),
-                     Vector3d(0.0, 0.0, lift_to_touch(loaded.mesh, role))};
-  };
-  tools.punch = make(Role::punch);
-  tools.die = make(Role::die);
-  tools.binder = make(Role::binder);
-  return tools;
+TouchingTools touching_tools(const StampingSpec& spec) {
+  return {touching(spec, Role::punch), touching(spec, Role::die), touching(spec, Role::binder)};
 }
 
 Shape raised(Shape shape, double z) {
@@ -245,15 +224,15 @@ Shape raised(Shape shape, double z) {
 
 double binder_area(const StampingSpec& spec) {
   const Blank blank = make_blank(outline_of(spec.blank), spec.blank.spacing, spec.blank.orientation);
-  Solid binder(spec, Role::binder);
-  binder.prepare();
-  const double ring = spec.binder.inner_radius + spec.binder.edge_fillet, below = 1e-3;
+  const Shape binder = touching(spec, Role::binder);
+  const auto* ring = std::get_if<RingShape>(&binder);
+  const double below = 1e-3;
   double area = 0.0;
   for (int i = 0; i < blank.nodes(); ++i) {
     const Vector3d& x = blank.reference[i];
-    const bool under = binder.mesh()
-                           ? std::abs(binder.distance_to({x.x(), x.y(), -below}) - below) < flat_tolerance
-                           : x.head<2>().norm() >= ring;
+    const bool under =
+        ring ? x.head<2>().norm() >= ring->opening_radius + ring->fillet
+             : std::abs(distance(binder, {x.x(), x.y(), -below}).distance - below) < flat_tolerance;
     if (under) area += blank.node_area[i];
   }
   return area;

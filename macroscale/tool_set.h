@@ -1,17 +1,25 @@
 #pragma once
 
-#include <string>
-#include <vector>
+#include <memory>
 
 #include "core/problem.h"
 #include "macroscale/stamping.h"
+#include "macroscale/tool_band.h"
 #include "macroscale/tools.h"
 
 namespace heddle::macroscale {
 
-/// The specification with every tool file read and checked (ToolFileSpec::loaded).
+/// A tool file as the solver uses it.
+struct LoadedToolFile {
+  LoadedTool tool;
+  std::shared_ptr<const ToolBand> band;  ///< in the file's own frame
+};
+
+/// The specification with every tool file read, checked and turned into a distance field
+/// (ToolFileSpec::loaded).
+/// @param thickness  of the stress-free fabric, which the field must reach past [m]
 /// @throws InputError  with the problems of all files
-StampingSpec with_tools_loaded(StampingSpec spec);
+StampingSpec with_tools_loaded(StampingSpec spec, double thickness);
 
 /// What the tool files have to fit: each other on the whole stroke, the fabric between them, the blank.
 /// Distances are taken from the vertices of one tool to the other at nine positions of the stroke.
@@ -20,15 +28,13 @@ StampingSpec with_tools_loaded(StampingSpec spec);
 Problems check_tools(const StampingSpec& spec, double thickness);
 
 /// Shapes of punch, die and binder, each moved along z so that it touches the plane z = 0: punch and binder
-/// from above, the die from below. Files become narrow bands.
+/// from above, the die from below.
 struct TouchingTools {
   Shape punch, die, binder;
-  std::vector<std::string> notes;  ///< what was read and repaired, for the report
 };
 
-/// @param largest_increment  of a node in one Newton iteration [m]: bands must be wider
-/// @throws InputError  if a band cannot be built
-TouchingTools touching_tools(const StampingSpec& spec, double thickness, double largest_increment);
+/// @param spec  with its tools loaded
+TouchingTools touching_tools(const StampingSpec& spec);
 
 /// The same shape moved up by z [m].
 Shape raised(Shape shape, double z);

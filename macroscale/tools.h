@@ -45,8 +45,9 @@ struct RingShape {
 
 class ToolBand;
 
-/// A tool from a file: the narrow band about its surface (macroscale/tool_band.h, which says what holds beyond
-/// the band). Its normal is the gradient of an interpolated distance, of length 1 up to the interpolation error.
+/// A tool from a file: the narrow band about its surface (macroscale/tool_band.h, which says what holds
+/// beyond the band). Its normal is the gradient of an interpolated distance, of length 1 up to the
+/// interpolation error.
 struct BandShape {
   std::shared_ptr<const ToolBand> band;
   Eigen::Vector3d offset = Eigen::Vector3d::Zero();  ///< where the file's origin stands [m]

@@ -31,7 +31,8 @@ struct Local {
 // Height of a tow's middle along it, with two derivatives.
 class Centreline {
  public:
-  Centreline(const UnitCell& cell, const TowPiece& tow) : cell_(cell), tow_(tow), half_(0.5 * cell.crimp_height()) {
+  Centreline(const UnitCell& cell, const TowPiece& tow)
+      : cell_(cell), tow_(tow), half_(0.5 * cell.crimp_height()) {
     if (const auto* arc = std::get_if<ArcPath>(&cell.path)) {
       radius_ = arc->radius;
       wrap_ = arc->wrap();
@@ -57,7 +58,8 @@ class Centreline {
     return tow_.direction == TowDirection::warp ? cell_.weave.warp_over(tow_.index, crossing)
                                                 : !cell_.weave.warp_over(crossing, tow_.index);
   }
-  // ArcPath::drop and SinePath::drop with their derivatives, without asking for the same angle again and again.
+  // ArcPath::drop and SinePath::drop with their derivatives, without asking for the same angle again and
+  // again.
   Jet arc_drop(double u) const {
     if (u > 0.5 * cell_.pitch) {
       const Jet mirrored = arc_drop(cell_.pitch - u);
@@ -93,11 +95,14 @@ class LensOutline {
   double edge() const { return half_width_; }
   double above(double across) const { return std::clamp(across, -half_width_, half_width_); }
   double steepest() const { return half_width_ / std::sqrt(radius_ * radius_ - half_width_ * half_width_); }
-  double half_height(double across) const { return std::abs(across) < half_width_ ? at(across).height.f : 0.0; }
+  double half_height(double across) const {
+    return std::abs(across) < half_width_ ? at(across).height.f : 0.0;
+  }
   Profile at(double v) const {
     const double root = std::sqrt(radius_ * radius_ - v * v);
-    return {{v, 1.0, 0.0},
-            {half_thickness_ - v * v / (radius_ + root), -v / root, -radius_ * radius_ / (root * root * root)}};
+    return {
+        {v, 1.0, 0.0},
+        {half_thickness_ - v * v / (radius_ + root), -v / root, -radius_ * radius_ / (root * root * root)}};
   }
 
  private:
@@ -107,13 +112,16 @@ class LensOutline {
 // The ellipse by its angle from the crown.
 class EllipseOutline {
  public:
-  explicit EllipseOutline(const EllipseSection& ellipse) : a_(0.5 * ellipse.width), b_(0.5 * ellipse.thickness) {}
+  explicit EllipseOutline(const EllipseSection& ellipse)
+      : a_(0.5 * ellipse.width), b_(0.5 * ellipse.thickness) {}
 
   double half_width() const { return a_; }
   double edge() const { return 0.5 * std::numbers::pi; }
   double above(double across) const { return std::asin(std::clamp(across / a_, -1.0, 1.0)); }
   double steepest() const { return std::numeric_limits<double>::infinity(); }
-  double half_height(double across) const { return b_ * std::sqrt(std::max(1.0 - across * across / (a_ * a_), 0.0)); }
+  double half_height(double across) const {
+    return b_ * std::sqrt(std::max(1.0 - across * across / (a_ * a_), 0.0));
+  }
   Profile at(double v) const {
     const double s = std::sin(v), c = std::cos(v);
     return {{a_ * s, a_ * c, -a_ * s}, {b_ * c, -b_ * s, -b_ * c}};
@@ -135,8 +143,13 @@ template <class SectionOutline>
 class TowSurface {
  public:
   TowSurface(const UnitCell& cell, const TowPiece& tow, const SectionOutline& section)
-      : centre_(cell, tow), section_(section), pitch_(cell.pitch), middle_(tow.index * cell.pitch),
-        warp_(tow.direction == TowDirection::warp), sin_(std::sin(cell.shear_angle)), cos_(std::cos(cell.shear_angle)) {
+      : centre_(cell, tow),
+        section_(section),
+        pitch_(cell.pitch),
+        middle_(tow.index * cell.pitch),
+        warp_(tow.direction == TowDirection::warp),
+        sin_(std::sin(cell.shear_angle)),
+        cos_(std::cos(cell.shear_angle)) {
     along_ = {1.0, 0.0, 0.0};
     across_ = {sin_, cos_, 0.0};
     if (!warp_) std::swap(along_, across_);
@@ -158,7 +171,8 @@ class TowSurface {
       if (std::abs(q.z() - centre_.at(cut).f) < section_.half_height(foot))
         nearest = std::min(nearest, std::abs(away));
     }
-    const bool inside = at.along > low_[0] && at.along < high_[0] && std::abs(height) < section_.half_height(at.across);
+    const bool inside =
+        at.along > low_[0] && at.along < high_[0] && std::abs(height) < section_.half_height(at.across);
     return inside ? -nearest : nearest;
   }
 
@@ -170,8 +184,8 @@ class TowSurface {
     Matrix2d bend;      // r . S_ab
   };
 
-  // The face on the point's own side of the middle is the nearer one, unless the section is thin or steep there:
-  // the other is no nearer than the gap to it in z over sqrt(1 + slope^2).
+  // The face on the point's own side of the middle is the nearer one, unless the section is thin or steep
+  // there: the other is no nearer than the gap to it in z over sqrt(1 + slope^2).
   double face_distance(const Vector3d& q, const Local& at, double height) const {
     const double side = height >= 0.0 ? 1.0 : -1.0;
     const double near = foot_distance(q, at, side);
@@ -220,8 +234,8 @@ class TowSurface {
     return result;
   }
 
-  // Newton's step, damped, on the rectangle of the parameters: one that leaves it stops at its edge and the other
-  // parameter is solved alone.
+  // Newton's step, damped, on the rectangle of the parameters: one that leaves it stops at its edge and the
+  // other parameter is solved alone.
   Vector2d step(const Value& now, const Vector2d& at, double damping) const {
     Matrix2d h = now.tangents + now.bend;
     if (!(h(0, 0) > 0.0 && h(1, 1) > 0.0 && h.determinant() > 1e-6 * h(0, 0) * h(1, 1))) h = now.tangents;
@@ -252,7 +266,8 @@ class TowSurface {
 // Calls use(surface) with the surface of a tow piece, whatever its section.
 template <class Use>
 auto with_surface(const UnitCell& cell, const TowPiece& tow, const Use& use) {
-  return std::visit([&](const auto& section) { return use(TowSurface(cell, tow, outline(section))); }, cell.section);
+  return std::visit([&](const auto& section) { return use(TowSurface(cell, tow, outline(section))); },
+                    cell.section);
 }
 
 int crossings(const UnitCell& cell, const TowPiece& tow) {
@@ -269,16 +284,18 @@ std::vector<TowPiece> tow_pieces(const UnitCell& cell) {
 }
 
 double tow_distance(const UnitCell& cell, const TowPiece& tow, const std::array<double, 3>& place) {
-  return with_surface(cell, tow,
-                      [&](const auto& surface) { return surface.distance({place[0], place[1], place[2]}); });
+  return with_surface(cell, tow, [&](const auto& surface) {
+    return surface.distance({place[0], place[1], place[2]});
+  });
 }
 
 LevelSet tow_level_set(const UnitCell& cell, const TowPiece& tow, double voxel, double half_width_voxels) {
   const double thickness = 2.0 * half_height(cell.section, 0.0);
   if (!(voxel > 0.0) || voxel > 0.2 * thickness)
-    throw InputError({{"level_set.voxel.range", "voxel", fmt::format("{} mm", 1e3 * voxel),
-                       fmt::format("must satisfy 0 < voxel <= a fifth of the tow thickness, {} mm", 0.2e3 * thickness),
-                       "Write 0.05 mm for the tow of Table 1."}});
+    throw InputError(
+        {{"level_set.voxel.range", "voxel", fmt::format("{} mm", 1e3 * voxel),
+          fmt::format("must satisfy 0 < voxel <= a fifth of the tow thickness, {} mm", 0.2e3 * thickness),
+          "Write 0.05 mm for the tow of Table 1."}});
   const double start = -0.5 * cell.pitch, end = start + crossings(cell, tow) * cell.pitch;
   const double side = 0.5 * width(cell.section), middle = tow.index * cell.pitch;
   const double top = 0.5 * (cell.crimp_height() + thickness);
@@ -293,8 +310,11 @@ LevelSet tow_level_set(const UnitCell& cell, const TowPiece& tow, double voxel, 
       }
     }
   return with_surface(cell, tow, [&](const auto& surface) {
-    return level_set_from_distance([&](double x, double y, double z) { return surface.distance({x, y, z}); }, box,
-                                   voxel, half_width_voxels);
+    return level_set_from_distance(
+        [&](double x, double y, double z) {
+          return surface.distance({x, y, z});
+        },
+        box, voxel, half_width_voxels);
   });
 }
 

@@ -20,16 +20,18 @@ std::vector<TowPiece> tow_pieces(const UnitCell& cell);
 
 /// Signed distance of a place in the fabric plane to the tow's surface, cuts included [m]; negative inside.
 ///
-/// The section is a vertical cut swept along the path, so the gap in z times cos(slope) is the distance to first
-/// order only. Here the foot point on each face S(u, v) = (place(u, v), c(u) +- f(v)) is found by Newton's method
-/// on |q - S|^2 with u and v held on the piece; the distance is second order in what is left of its error.
-/// Valid near the tow (within its thickness), where the foot point is one of those the starts find.
+/// The section is a vertical cut swept along the path, so the gap in z times cos(slope) is the distance to
+/// first order only. Here the foot point on each face S(u, v) = (place(u, v), c(u) +- f(v)) is found by
+/// Newton's method on |q - S|^2 with u and v held on the piece; the distance is second order in what is left
+/// of its error. Valid near the tow (within its thickness), where the foot point is one of those the starts
+/// find.
 double tow_distance(const UnitCell& cell, const TowPiece& tow, const std::array<double, 3>& place);
 
 /// The tow as a narrow band, sampled from tow_distance.
 /// @param voxel  [m]
 /// @throws InputError  if the voxel is more than a fifth of the tow thickness
-LevelSet tow_level_set(const UnitCell& cell, const TowPiece& tow, double voxel, double half_width_voxels = 2.5);
+LevelSet tow_level_set(const UnitCell& cell, const TowPiece& tow, double voxel,
+                       double half_width_voxels = 2.5);
 
 /// What the level sets of all tows of one repeat say about the closed forms.
 struct LevelSetCheck {

@@ -396,12 +396,13 @@ constexpr double melting_range_of_polypropylene = 433.15;  // its lower end [K];
 /// Reads the tools that files give and measures them against each other, the fabric and the blank.
 Problems load_tools(Case& a_case) {
   if (!a_case.stamping) return {};
+  const double thickness = a_case.cell->weave.fabric_thickness;
   try {
-    a_case.stamping = macroscale::with_tools_loaded(*a_case.stamping);
+    a_case.stamping = macroscale::with_tools_loaded(*a_case.stamping, thickness);
   } catch (const InputError& error) {
     return error.problems();
   }
-  return macroscale::check_tools(*a_case.stamping, a_case.cell->weave.fabric_thickness);
+  return macroscale::check_tools(*a_case.stamping, thickness);
 }
 
 /// Values no source of ours measures, said wherever the case is shown.

@@ -19,8 +19,8 @@ LevelSet ball(double x, double voxel, double half_width = 3.0) {
   const auto distance = [x](double px, double py, double pz) {
     return std::sqrt((px - x) * (px - x) + py * py + pz * pz) - radius;
   };
-  return level_set_from_distance(distance, {{x - radius, -radius, -radius}, {x + radius, radius, radius}}, voxel,
-                                 half_width);
+  return level_set_from_distance(distance, {{x - radius, -radius, -radius}, {x + radius, radius, radius}},
+                                 voxel, half_width);
 }
 
 std::vector<float> all_values(const LevelSet& set) {

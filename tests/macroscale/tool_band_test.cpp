@@ -3,8 +3,8 @@
 #include <Eigen/Geometry>
 #include <catch2/catch.hpp>
 #include <cmath>
-#include <cstdio>
 #include <limits>
+#include <numbers>
 #include <random>
 
 #include "core/problem.h"
@@ -21,6 +21,7 @@ using heddle::test::derivative_gap;
 
 namespace {
 
+constexpr double degree = std::numbers::pi / 180.0;
 constexpr double infinity = std::numeric_limits<double>::infinity();
 
 // Bodies with a closed distance that are round everywhere, so that only the interpolation errs.
@@ -33,8 +34,9 @@ Distance ball_distance(const Vector3d& x) {
 ToolBand ball_band(double voxel, double half_width = 2e-3) {
   const auto d = [](double x, double y, double z) { return std::sqrt(x * x + y * y + z * z) - ball_radius; };
   const double r = ball_radius;
-  return ToolBand(level_set_from_distance(d, {{-r, -r, -r}, {r, r, r}}, voxel, half_width / voxel + ToolBand::rim),
-                  half_width);
+  return ToolBand(
+      level_set_from_distance(d, {{-r, -r, -r}, {r, r, r}}, voxel, half_width / voxel + ToolBand::rim),
+      half_width);
 }
 
 ToolBand torus_band(double voxel, double half_width = 2e-3) {
@@ -82,12 +84,6 @@ Error error_of(const ToolBand& band, const Exact& exact, const Where& where, dou
   return e;
 }
 
-void print(const char* what, const Error& e) {
-  std::printf("%s: d rms %.3g max %.3g um; angle rms %.3g max %.3g deg; length %.3g; curvature rms %.3g max %.3g 1/m\n", what,
-              1e6 * e.distance_rms, 1e6 * e.distance_max, 57.2958 * e.angle_rms, 57.2958 * e.angle_max, e.length_max,
-              e.curvature_rms, e.curvature_max);
-}
-
 // Points in the box, even.
 auto in_box(const Vector3d& low, const Vector3d& high) {
   return [low, high](std::mt19937& random) {
@@ -108,37 +104,85 @@ auto near_ball(double reach) {
 
 }  // namespace
 
-TEST_CASE("scratch", "[.scratch]") {
-  for (double voxel : {1e-3, 0.5e-3, 0.25e-3}) {
-    std::printf("%g ", voxel);
-    print("ball", error_of(ball_band(voxel), ball_distance, near_ball(2e-3), 2e-3));
-    const RingShape ring{ring_fillet, ring_radius - ring_fillet, ring_fillet, true};
-    const auto exact = [&](const Vector3d& x) { return distance(ring, x); };
-    const auto where = in_box({0, 0, 0}, {28e-3, 28e-3, 8e-3});
-    const auto fillet_only = [&](std::mt19937& random) {
-      for (;;) {
-        const Vector3d x = where(random);
-        if (std::hypot(x.x(), x.y()) < ring_radius) return x;
-      }
-    };
-    print("torus", error_of(torus_band(voxel), exact, fillet_only, 2e-3));
-  }
-  for (int steps : {30, 60, 120})
-    for (double voxel : {1e-3, 0.5e-3}) {
-      const TriangleMesh mesh = test::punch_mesh(20e-3, 30e-3, steps);
-      std::printf("%d tris %zu %g V %g ", steps, mesh.triangles.size(), voxel, volume(mesh));
-      const ToolBand band = tool_band(mesh, {.voxel = voxel, .half_width = 3e-3}, "tools.punch");
-      const HemisphereShape punch{{0, 0, 0}, 20e-3};
-      print("punch", error_of(band, [&](const Vector3d& x) { return distance(punch, x); },
-                              in_box({-24e-3, -24e-3, -4e-3}, {24e-3, 24e-3, 24e-3}), 3e-3));
-      const TriangleMesh die = test::die_mesh(22e-3, 6e-3, 45e-3, 15e-3, steps / 2, 4 * steps);
-      std::printf("%d tris %zu %g V %g ", steps, die.triangles.size(), voxel, volume(die));
-      const ToolBand die_band = tool_band(die, {.voxel = voxel, .half_width = 3e-3}, "tools.die");
-      const RingShape ring{0.0, 22e-3, 6e-3, true};
-      print("die", error_of(die_band, [&](const Vector3d& x) { return distance(ring, x); },
-                            in_box({0, 0, -10e-3}, {28e-3, 28e-3, 4e-3}), 3e-3));
-      std::printf("memory %g MB, estimate %g MB\n", 1e-6 * static_cast<double>(die_band.memory()), 1e-6 * estimated_memory(die, {.voxel = voxel, .half_width = 3e-3}));
+TEST_CASE(
+    "the spline of a band errs by the third power of the voxel, its gradient by the second, its Hessian by "
+    "the first",
+    "[macroscale][tool_band]") {
+  const auto order = [](double coarse, double fine) { return std::log2(coarse / fine); };
+  const Error coarse = error_of(ball_band(1e-3), ball_distance, near_ball(1.95e-3), 1.95e-3);
+  const Error fine = error_of(ball_band(0.5e-3), ball_distance, near_ball(1.95e-3), 1.95e-3);
+  CHECK(order(coarse.distance_rms, fine.distance_rms) > 2.8);
+  CHECK(order(coarse.angle_rms, fine.angle_rms) > 1.9);
+  CHECK(order(coarse.curvature_rms, fine.curvature_rms) > 0.9);
+  CHECK(fine.distance_max < 0.02e-6);
+  CHECK(fine.angle_max < 0.01 * degree);
+  CHECK(fine.length_max < 2e-4);
+  CHECK(fine.curvature_max < 1.5);  // of 71 1/m
+}
+
+TEST_CASE("the band of a rounded edge follows a radius of twelve voxels", "[macroscale][tool_band]") {
+  const RingShape ring{ring_fillet, ring_radius - ring_fillet, ring_fillet, true};
+  const auto somewhere = in_box({0, 0, 0}, {28e-3, 28e-3, 8e-3});
+  const auto over_the_fillet = [&](std::mt19937& random) {
+    for (;;) {
+      const Vector3d x = somewhere(random);
+      if (std::hypot(x.x(), x.y()) < ring_radius) return x;
     }
+  };
+  const Error e = error_of(
+      torus_band(0.5e-3), [&](const Vector3d& x) { return distance(ring, x); }, over_the_fillet, 1.95e-3);
+  CHECK(e.distance_rms < 0.04e-6);
+  CHECK(e.distance_max < 0.2e-6);
+  CHECK(e.angle_rms < 0.02 * degree);
+  CHECK(e.angle_max < 0.1 * degree);
+  CHECK(e.length_max < 2e-3);
+  CHECK(e.curvature_rms < 6.0);  // of up to 250 1/m
+}
+
+TEST_CASE("the band of a punch's mesh agrees with the hemisphere it stands for up to its facets",
+          "[macroscale][tool_band]") {
+  // Edges of 1.5 degrees: the facets' middles lie 20 mm (1 - cos 0.75 deg) = 1.7 um inside, each way.
+  const TriangleMesh mesh = test::punch_mesh(20e-3, 30e-3, 60);
+  const ToolBand band = tool_band(mesh, {.voxel = 0.5e-3, .half_width = 3e-3}, "tools.punch");
+  const HemisphereShape punch{{0, 0, 0}, 20e-3};
+  const Error e = error_of(
+      band, [&](const Vector3d& x) { return distance(punch, x); },
+      in_box({-24e-3, -24e-3, -4e-3}, {24e-3, 24e-3, 24e-3}), 2.9e-3);
+  CHECK(e.distance_rms < 2.2e-6);
+  CHECK(e.distance_max < 4e-6);
+  CHECK(e.angle_rms < 0.1 * degree);
+  CHECK(e.angle_max < 0.5 * degree);
+  CHECK(e.length_max < 0.01);
+  CHECK(e.curvature_rms < 15.0);  // facets of a voxel's size are seen
+}
+
+TEST_CASE("the band of a die's mesh agrees with the ring with fillet it stands for up to its facets",
+          "[macroscale][tool_band]") {
+  // 3 degrees on the fillet, 1.5 round the opening: 2.1 um outside and up to 2.4 um inside.
+  const TriangleMesh mesh = test::die_mesh(22e-3, 6e-3, 45e-3, 15e-3, 30, 240);
+  const ToolBand band = tool_band(mesh, {.voxel = 0.5e-3, .half_width = 3e-3}, "tools.die");
+  const RingShape ring{0.0, 22e-3, 6e-3, true};
+  const Error e = error_of(
+      band, [&](const Vector3d& x) { return distance(ring, x); },
+      in_box({0, 0, -10e-3}, {28e-3, 28e-3, 4e-3}), 2.8e-3);
+  CHECK(e.distance_rms < 1.5e-6);
+  CHECK(e.distance_max < 8e-6);
+  CHECK(e.angle_rms < 0.25 * degree);
+  CHECK(e.angle_max < 2.5 * degree);  // where fillet and flat meet the curvature jumps
+  CHECK(e.curvature_rms < 40.0);
+}
+
+TEST_CASE("the band of a plate is the plane's distance up to the rounding of a float",
+          "[macroscale][tool_band]") {
+  const TriangleMesh mesh = test::box_mesh({-30e-3, -30e-3, -8e-3}, {30e-3, 30e-3, 0.0});
+  const ToolBand band = tool_band(mesh, {.voxel = 0.5e-3, .half_width = 3e-3}, "tools.die");
+  const PlaneShape plane;
+  const Error e = error_of(
+      band, [&](const Vector3d& x) { return distance(plane, x); },
+      in_box({-20e-3, -20e-3, -2.9e-3}, {20e-3, 20e-3, 2.9e-3}), 2.9e-3);
+  CHECK(e.distance_max < 1e-9);
+  CHECK(e.angle_max < 1e-6);
+  CHECK(e.curvature_max < 0.05);
 }
 
 TEST_CASE("value and slope of a band are continuous across voxels and bricks, the Hessian bounded",
@@ -160,7 +204,8 @@ TEST_CASE("value and slope of a band are continuous across voxels and bricks, th
     const Distance a = evaluate(band, below), b = evaluate(band, above);
     if (!std::isfinite(a.distance) || std::abs(a.distance) > 1.9e-3) continue;
     REQUIRE(std::abs(a.distance - b.distance) < 3.0 * e);
-    // The slope may change by the curvature times the way; 60 1/m is the sphere's, with the spline's own jumps.
+    // The slope may change by the curvature times the way; 60 1/m is the sphere's, with the spline's own
+    // jumps.
     REQUIRE((a.normal - b.normal).norm() < 2.0 * e * 200.0 + 1e-12);
     REQUIRE((a.curvature - b.curvature).norm() < 20.0);
   }
@@ -188,7 +233,8 @@ TEST_CASE("a band's normal is the slope of its distance, and its curvature the s
       };
       if (std::abs(at.normal[c]) > 1e-2) {
         CHECK(derivative_gap([&](double t) { return moved(t).distance; }, x[c], voxel, at.normal[c]) < 1e-7);
-        CHECK(derivative_gap([&](double t) { return moved(t).distance; }, x[c], voxel, 1.01 * at.normal[c]) > 1e-4);
+        CHECK(derivative_gap([&](double t) { return moved(t).distance; }, x[c], voxel, 1.01 * at.normal[c]) >
+              1e-4);
       }
       for (int r = 0; r < 3; ++r) {
         const double h = 1e-3 * voxel;  // the slope is quadratic in a voxel: differences are exact
@@ -206,7 +252,8 @@ TEST_CASE("contact with a band: the residual is the slope of the potential, the 
   scene.blank = make_blank({0.02, 0.02}, 0.005);
   scene.fabric = &fabric;
   // The apex stands 0.4 mm below the blank: the middle node and its neighbours are pressed.
-  const BandShape punch{std::make_shared<const ToolBand>(ball_band(0.5e-3, 4e-3)), {0, 0, ball_radius - 0.3e-3}};
+  const BandShape punch{std::make_shared<const ToolBand>(ball_band(0.5e-3, 4e-3)),
+                        {0, 0, ball_radius - 0.3e-3}};
   scene.tools = {{Role::punch, punch, Motion::driven, 0.0, 0.0}};
   const State state = initial_state(scene);
   StepData step;
@@ -222,21 +269,21 @@ TEST_CASE("contact with a band: the residual is the slope of the potential, the 
   for (double& value : x) value += 1e-4 * uniform(random);
   for (double& value : d) value = uniform(random);
   int pressed = 0;
-  for (int i = 0; i < scene.blank.nodes(); ++i) pressed += system.tool_contact(step, x, 0, i).normal.pressure > 0.0;
+  for (int i = 0; i < scene.blank.nodes(); ++i)
+    pressed += system.tool_contact(step, x, 0, i).normal.pressure > 0.0;
   REQUIRE(pressed >= 3);
 
   // Only what the tool adds: the blank itself is stiffer by orders.
-  const auto compaction = [&](double t) {
-    return system.potential(step, x + t * d).compaction;
-  };
+  const auto compaction = [&](double t) { return system.potential(step, x + t * d).compaction; };
   Eigen::VectorXd force = Eigen::VectorXd::Zero(x.size()), bend = force;
   for (int i = 0; i < scene.blank.nodes(); ++i) {
     const ToolContact contact = system.tool_contact(step, x, 0, i);
     const double a = scene.blank.node_area[i];
     const Vector3d along = d.segment<3>(3 * i);
     force.segment<3>(3 * i) = -a * contact.normal.pressure * contact.surface.normal;
-    bend.segment<3>(3 * i) = a * (contact.normal.stiffness * contact.surface.normal.dot(along) * contact.surface.normal -
-                                  contact.normal.pressure * contact.surface.curvature * along);
+    bend.segment<3>(3 * i) =
+        a * (contact.normal.stiffness * contact.surface.normal.dot(along) * contact.surface.normal -
+             contact.normal.pressure * contact.surface.curvature * along);
   }
   CHECK(derivative_gap(compaction, 0.0, 1e-4, force.dot(d)) < 1e-6);
   CHECK(derivative_gap(compaction, 0.0, 1e-4, 1.001 * force.dot(d)) > 1e-4);
@@ -245,7 +292,8 @@ TEST_CASE("contact with a band: the residual is the slope of the potential, the 
     double sum = 0.0;
     for (int i = 0; i < scene.blank.nodes(); ++i) {
       const ToolContact contact = system.tool_contact(step, y, 0, i);
-      sum -= scene.blank.node_area[i] * contact.normal.pressure * contact.surface.normal.dot(d.segment<3>(3 * i));
+      sum -= scene.blank.node_area[i] * contact.normal.pressure *
+             contact.surface.normal.dot(d.segment<3>(3 * i));
     }
     return sum;
   };
@@ -254,8 +302,8 @@ TEST_CASE("contact with a band: the residual is the slope of the potential, the 
 
   // And the whole system, as the solver sees it.
   const Eigen::VectorXd g = system.gradient(step, x);
-  CHECK(derivative_gap([&](double t) { return system.potential(step, x + t * d).total(); }, 0.0, 1e-4, g.dot(d)) <
-        1e-6);
+  CHECK(derivative_gap([&](double t) { return system.potential(step, x + t * d).total(); }, 0.0, 1e-4,
+                       g.dot(d)) < 1e-6);
 }
 
 TEST_CASE("beyond its band a tool is either far or an error, never 'no contact' inside",
@@ -285,7 +333,7 @@ TEST_CASE("beyond its band a tool is either far or an error, never 'no contact' 
       CHECK(found.distance == Approx(truth).margin(2e-6));
     } else {
       CHECK(found.distance >= w - 1e-6);
-      CHECK(found.distance <= truth + 2e-6);
+      CHECK(found.distance <= truth + 0.1 * band.voxel());  // where the rim ends the spline swings a little
     }
     before = found.distance;
   }
@@ -324,7 +372,8 @@ TEST_CASE("a sheet has a band on both sides, told by its normals", "[macroscale]
   test::add_arc(meridian, {0.0, 0.0}, ball_radius, -0.5 * std::numbers::pi, 0.0, 60);
   const TriangleMesh bowl = test::revolved(meridian, 240, false);
   CHECK_THROWS_AS(tool_band(bowl, {.voxel = 0.5e-3, .half_width = 2e-3}, "tools.punch"), InputError);
-  const ToolBand band = tool_band(bowl, {.voxel = 0.5e-3, .half_width = 2e-3, .sides = Sides::open}, "tools.punch");
+  const ToolBand band =
+      tool_band(bowl, {.voxel = 0.5e-3, .half_width = 2e-3, .sides = Sides::open}, "tools.punch");
   std::mt19937 random(9);
   const auto where = near_ball(1.9e-3);
   for (int n = 0; n < 2000; ++n) {
@@ -369,7 +418,8 @@ TEST_CASE("a band too large, too narrow or for a tool too thin is refused with t
   CHECK(required_half_width(0.6e-3, 1.5e-3, 1e-3) == Approx(3.1e-3));
 }
 
-TEST_CASE("a memory estimate is above what the band takes and within a factor of four", "[macroscale][tool_band]") {
+TEST_CASE("a memory estimate is above what the band takes and within a factor of four",
+          "[macroscale][tool_band]") {
   const TriangleMesh punch = test::punch_mesh(20e-3, 30e-3, 30);
   const ToolBandSpec spec{.voxel = 0.5e-3, .half_width = 3e-3};
   const ToolBand band = tool_band(punch, spec, "tools.punch");

@@ -54,7 +54,8 @@ inline void add_line(Meridian& meridian, std::array<double, 2> to, int steps) {
     meridian.push_back({from[0] + (to[0] - from[0]) * k / steps, from[1] + (to[1] - from[1]) * k / steps});
 }
 
-/// Hemisphere with its apex at the origin, carried on by a cylinder up to `height`: HemisphereShape with an end.
+/// Hemisphere with its apex at the origin, carried on by a cylinder up to `height`: HemisphereShape with an
+/// end.
 /// @param steps  a quarter of the meridian and a quarter of the round are cut into so many
 inline TriangleMesh punch_mesh(double radius, double height, int steps) {
   Meridian meridian;
@@ -65,9 +66,10 @@ inline TriangleMesh punch_mesh(double radius, double height, int steps) {
   return revolved(meridian, 4 * steps, false);
 }
 
-/// Die: ring plate with a rounded edge, flat face at z = 0, solid below; RingShape{0, opening, fillet, true} with
-/// an end.
-inline TriangleMesh die_mesh(double opening, double fillet, double outer, double depth, int steps, int segments) {
+/// Die: ring plate with a rounded edge, flat face at z = 0, solid below; RingShape{0, opening, fillet, true}
+/// with an end.
+inline TriangleMesh die_mesh(double opening, double fillet, double outer, double depth, int steps,
+                             int segments) {
   Meridian meridian{{opening, -depth}};
   add_line(meridian, {outer, -depth}, steps);
   add_line(meridian, {outer, 0.0}, steps);
@@ -83,7 +85,8 @@ inline TriangleMesh die_mesh(double opening, double fillet, double outer, double
 inline TriangleMesh box_mesh(const std::array<double, 3>& low, const std::array<double, 3>& high) {
   TriangleMesh mesh;
   for (int n = 0; n < 8; ++n)
-    mesh.vertices.push_back({(n & 1) ? high[0] : low[0], (n & 2) ? high[1] : low[1], (n & 4) ? high[2] : low[2]});
+    mesh.vertices.push_back(
+        {(n & 1) ? high[0] : low[0], (n & 2) ? high[1] : low[1], (n & 4) ? high[2] : low[2]});
   mesh.triangles = {{0, 2, 1}, {1, 2, 3}, {4, 5, 6}, {5, 7, 6}, {0, 1, 4}, {1, 5, 4},
                     {2, 6, 3}, {3, 6, 7}, {0, 4, 2}, {2, 4, 6}, {1, 3, 5}, {3, 7, 5}};
   return mesh;

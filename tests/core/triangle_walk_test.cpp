@@ -1,0 +1,103 @@
+#include "core/triangle_walk.h"
+
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <catch2/catch.hpp>
+#include <cmath>
+#include <limits>
+#include <random>
+
+#include "core/level_set.h"
+
+using namespace heddle;
+using Eigen::Vector3d;
+
+namespace {
+
+// Nearest of many points of a triangle, refined about the best: slow and without a single case distinction.
+double searched_distance(const Vector3d& a, const Vector3d& b, const Vector3d& c, const Vector3d& q) {
+  double best = std::numeric_limits<double>::infinity(), s0 = 0.5, t0 = 0.5, reach = 0.5;
+  for (int level = 0; level < 60; ++level, reach *= 0.7) {
+    double s_best = s0, t_best = t0;
+    for (int i = -4; i <= 4; ++i)
+      for (int j = -4; j <= 4; ++j) {
+        const double s = std::clamp(s0 + reach * i / 4.0, 0.0, 1.0);
+        const double t = std::clamp(t0 + reach * j / 4.0, 0.0, 1.0 - s);
+        const double d = (a + s * (b - a) + t * (c - a) - q).norm();
+        if (d < best) {
+          best = d;
+          s_best = s;
+          t_best = t;
+        }
+      }
+    s0 = s_best;
+    t0 = t_best;
+  }
+  return best;
+}
+
+Vector3d vertex(const TriangleMesh& mesh, int v) {
+  return Vector3d::Map(mesh.vertices[static_cast<std::size_t>(v)].data());
+}
+
+double nearest_of_all(const TriangleMesh& mesh, const Vector3d& q) {
+  double best = std::numeric_limits<double>::infinity();
+  for (const auto& t : mesh.triangles)
+    best = std::min(best, squared_distance(vertex(mesh, t[0]), vertex(mesh, t[1]), vertex(mesh, t[2]), q));
+  return std::sqrt(best);
+}
+
+// An egg, so that no two places are alike.
+TriangleMesh egg() {
+  const auto distance = [](double x, double y, double z) {
+    return std::sqrt(x * x + 1.3 * y * y + 0.8 * z * z) - 3e-3;  // not a true distance: only its zero is used
+  };
+  return surface(level_set_from_distance(distance, {{-4e-3, -4e-3, -4e-3}, {4e-3, 4e-3, 4e-3}}, 0.2e-3, 5.0));
+}
+
+}  // namespace
+
+TEST_CASE("the distance to a triangle is that to the nearest of its points", "[core][triangle_walk]") {
+  std::mt19937 random(2);
+  std::uniform_real_distribution<double> uniform(-1.0, 1.0);
+  const auto point = [&] { return Vector3d(uniform(random), uniform(random), uniform(random)); };
+  for (int n = 0; n < 200; ++n) {
+    const Vector3d a = point(), b = point(), c = point(), q = 1.5 * point();
+    CHECK(std::sqrt(squared_distance(a, b, c, q)) == Approx(searched_distance(a, b, c, q)).epsilon(1e-5));
+  }
+}
+
+TEST_CASE("a walk over neighbours ends at the nearest triangle of all", "[core][triangle_walk]") {
+  const TriangleMesh mesh = egg();
+  const TriangleWalk walk(mesh);
+  std::mt19937 random(4);
+  std::uniform_real_distribution<double> uniform(-4e-3, 4e-3);
+  for (int n = 0; n < 100; ++n) {
+    const Vector3d q(uniform(random), uniform(random), uniform(random));
+    if (q.norm() < 3.2e-3) continue;  // outside a convex body there is one nearest place, and no false ones
+    const int start = static_cast<int>(static_cast<std::size_t>(n) * 7919 % mesh.triangles.size());
+    CHECK(std::sqrt(walk.from(walk.at(start, q), q).squared) ==
+          Approx(nearest_of_all(mesh, q)).epsilon(1e-12));
+  }
+}
+
+TEST_CASE(
+    "the band of a mesh holds the distance to its nearest triangle, voxels larger than triangles or not",
+    "[core][triangle_walk][level_set]") {
+  const TriangleMesh mesh = egg();
+  const double voxel = GENERATE(0.1e-3, 0.4e-3);
+  const LevelSet set = level_set_from_mesh(mesh, voxel, 4.0);
+  std::vector<float> values(512);
+  int count = 0;
+  for (const auto& block : set.blocks()) {
+    set.read(block, 8, values.data());
+    for (int n = count % 7; n < 512; n += 61) {
+      const double value = values[static_cast<std::size_t>(n)];
+      if (std::abs(value) > set.half_width()) continue;
+      const Vector3d q = voxel * Vector3d(block[0] + n / 64, block[1] + n / 8 % 8, block[2] + n % 8);
+      ++count;
+      REQUIRE(std::abs(value) == Approx(nearest_of_all(mesh, q)).margin(1e-9));
+    }
+  }
+  CHECK(count > 100);
+}
