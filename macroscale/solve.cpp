@@ -48,7 +48,8 @@ FrictionPoints freeze(const System& system, const StepData& step, const VectorXd
       point.memory = step.start->memory[k][i];
       if (contact.pressure <= 0.0) return;
       point.load = contact.pressure * scene.blank.node_area[i];
-      point.normal = d.normal;
+      // A distance interpolated from samples has a gradient of length about 1: slip needs a true projection.
+      point.normal = d.normal.normalized();
       point.context = context_of(scene, contact.pressure, shear_angle[i]);
     });
   return points;
