@@ -1,7 +1,12 @@
 // Lists of cases: one after the other, each with its record, none twice.
 #include <catch2/catch.hpp>
 
+#include <signal.h>
+
+#include <atomic>
+#include <chrono>
 #include <fstream>
+#include <thread>
 
 #include "core/problem.h"
 #include "pipeline/case_list.h"
@@ -93,6 +98,42 @@ TEST_CASE("a record that cannot be read counts as none, and says so", "[pipeline
   CHECK(again[0].status == CaseStatus::done);
   CHECK_FALSE(again[0].run_before);
   CHECK_THROWS_WITH(pipeline::read_record("{", "x.json"), Catch::Contains("is no record of a case"));
+}
+
+TEST_CASE("a list that is interrupted goes on in the middle of the case it was at", "[pipeline][cases]") {
+  const Scratch scratch;
+  warm(scratch / "cache");
+  const auto steps = with(quick("process.steps=40"), "blank.spacing=26 mm");
+  const std::vector<pipeline::ListedCase> cases{{"a", config, quick("process.binder_force=500 N")},
+                                                {"b", config, steps},
+                                                {"c", config, quick("process.binder_force=600 N")}};
+  pipeline::CaseListOptions options{
+      .folder = scratch / "list", .cache = scratch / "cache", .checkpoint_interval = 0.0, .quiet = true};
+  // Outside a run the signal does nothing here; inside, the run takes it.
+  struct sigaction ignore {
+  }, before{};
+  ignore.sa_handler = SIG_IGN;
+  sigaction(SIGTERM, &ignore, &before);
+  std::atomic<bool> over{false};
+  std::thread user([&] {
+    while (!over && !fs::exists(scratch / "list/cases/b/macroscale/checkpoint.h5"))
+      std::this_thread::sleep_for(std::chrono::milliseconds(1));
+    if (!over) kill(getpid(), SIGTERM);
+  });
+  const auto first = pipeline::run_case_list(cases, options);
+  over = true;
+  user.join();
+  sigaction(SIGTERM, &before, nullptr);
+  REQUIRE(first.size() == 2);
+  CHECK(first[1].status == CaseStatus::interrupted);
+  CHECK_THAT(first[1].message, Catch::Contains("interrupted at step") && Catch::Contains("of 40"));
+  const auto second = pipeline::run_case_list(cases, options);
+  REQUIRE(second.size() == 3);
+  CHECK(second[0].run_before);
+  CHECK(second[1].status == CaseStatus::done);
+  CHECK_THAT(pipeline::read_file(scratch / "list/cases/b/log.txt"),
+             Catch::Contains("of 40 steps were done before"));
+  CHECK(second[2].status == CaseStatus::done);
 }
 
 TEST_CASE("ids of a list that repeat or cannot name a folder are refused, all at once",

@@ -172,7 +172,7 @@ TEST_CASE("SIGTERM and SIGINT leave a checkpoint and say how to go on", "[pipeli
     CHECK(stopped.exit_code == 1);
     CHECK_THAT(stopped.said, Catch::Contains("interrupted at step") && Catch::Contains("of 12") &&
                                  Catch::Contains("go on with: heddle run") && Catch::Contains("--resume") &&
-                                 Catch::Contains("--set 'blank.spacing=26 mm'"));
+                                 Catch::Contains("--set 'blank.spacing=32 mm'"));
     CHECK(fs::exists(scratch / "run/macroscale/checkpoint.h5"));
     CHECK(fs::exists(scratch / "run/macroscale/history.csv"));
     CHECK_FALSE(fs::exists(scratch / "run/summary.json"));

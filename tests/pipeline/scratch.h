@@ -37,7 +37,7 @@ class Scratch {
 /// The shipped stamping, small: 13 x 13 nodes, 6 steps, constant mu, so that its friction stage has nothing
 /// to fit.
 inline std::vector<std::string> small_stamping() {
-  return {"blank.spacing=26 mm", "process.steps=6", "process.punch={stroke: 20 mm, time: 0.12 s}"};
+  return {"blank.spacing=32 mm", "process.steps=5", "process.punch={stroke: 20 mm, time: 0.12 s}"};
 }
 
 inline std::vector<std::string> with(std::vector<std::string> base, const std::string& more) {
