@@ -79,13 +79,14 @@ std::optional<CaseRecord> record_in(const fs::path& path) {
   }
 }
 
-// Whether an interrupted run of the same inputs stands in the folder; what cannot be trusted is run anew.
+// Whether a run of the same inputs stands in the folder, to go on with. One of other inputs makes room
+// without a word, one that is damaged with one.
 bool can_go_on(const Case& a_case, const fs::path& folder) {
   if (!a_case.stamping) return false;
   try {
     return checkpoint_in(folder, inputs_of(ChainStage::macroscale, a_case)).has_value();
   } catch (const InputError& error) {
-    std::cerr << error.what();
+    if (error.problems()[0].id != "run.resume.changed") std::cerr << error.what();
     return false;
   }
 }

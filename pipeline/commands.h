@@ -21,8 +21,8 @@ struct RunOptions {
   bool force = false;                         ///< write into a folder that holds another case
   bool quiet = false;                         ///< no progress
   std::filesystem::path cache = {};           ///< folder of stages done before; empty: every stage is run
-  double checkpoint_interval = 10.0;          ///< wall time between two checkpoints of a stamping [s]; 0: each step
-  bool print = true;                          ///< results on standard output
+  double checkpoint_interval = 10.0;  ///< wall time between two checkpoints of a stamping [s]; 0: each step
+  bool print = true;                  ///< results on standard output
 };
 
 struct CheckOptions {
