@@ -85,6 +85,7 @@ TEST_CASE("each fault of an outline is named with its place", "[macroscale][outl
               {"(500, 500) mm", "edges 1 and 3"}));
   CHECK(names(found({{{0, 0}, {2, 0}, {1, 0}, {1, 1}}, {}}), "blank.outline.simple",
               {"the outer border"}));  // folds back
+  CHECK(names(found({{{0, 0}, {2, 0}, {1, 0}}, {}}), "blank.outline.simple", {"the outer border"}));
   CHECK(names(found({{{0, 0}, {2, 0}, {2, 1}, {1, 0}, {0, 1}}, {}}), "blank.outline.simple",
               {"(1000, 0) mm"}));  // touches
   CHECK(names(found({{{0, 0}, {0, 1}, {1, 1}, {1, 0}}, {}}), "blank.outline.orientation",
