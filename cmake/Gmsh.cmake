@@ -1,5 +1,4 @@
-# Debian's gmsh ships no CMake package. As needed: loading it (OpenCASCADE, FLTK) takes a tenth of a second, which a
-# test program that reads no CAD file should not spend.
+# Debian's gmsh ships no CMake package.
 find_path(GMSH_INCLUDE_DIR gmsh.h)
 find_library(GMSH_LIBRARY gmsh)
 if(NOT GMSH_INCLUDE_DIR OR NOT GMSH_LIBRARY)
@@ -7,4 +6,4 @@ if(NOT GMSH_INCLUDE_DIR OR NOT GMSH_LIBRARY)
 endif()
 add_library(heddle_gmsh INTERFACE)
 target_include_directories(heddle_gmsh SYSTEM INTERFACE ${GMSH_INCLUDE_DIR})
-target_link_libraries(heddle_gmsh INTERFACE -Wl,--as-needed ${GMSH_LIBRARY} -Wl,--no-as-needed)
+target_link_libraries(heddle_gmsh INTERFACE ${GMSH_LIBRARY})

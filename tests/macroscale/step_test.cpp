@@ -221,3 +221,26 @@ TEST_CASE("STEP files that cannot be meshed are refused with the reason", "[macr
   CHECK(names(refusal([&] { read_tool(fine, expected); }), "tools.punch.mesh_size.cad",
               {"at most 2000000 triangles"}));
 }
+
+TEST_CASE("gmsh and CGAL stay behind the files that wall them off", "[macroscale][layout]") {
+  const std::vector<std::pair<std::string, std::vector<std::string>>> walls{
+      {"#include <gmsh", {"macroscale/cad.cpp"}},
+      {"#include <CGAL/",
+       {"macroscale/mesh_check.cpp", "macroscale/mesh_distance.cpp", "macroscale/outline.cpp"}}};
+  const std::filesystem::path source = HEDDLE_SOURCE_DIR;
+  int seen = 0;
+  for (const char* room : {"core", "friction", "mesoscale", "macroscale", "pipeline"}) {
+    for (const auto& entry : std::filesystem::directory_iterator(source / room)) {
+      if (entry.path().extension() != ".h" && entry.path().extension() != ".cpp") continue;
+      const std::string name = std::filesystem::relative(entry.path(), source).generic_string();
+      const std::string text = contents(entry.path());
+      for (const auto& [line, files] : walls) {
+        if (text.find(line) == std::string::npos) continue;
+        INFO(name << " has " << line);
+        CHECK(std::find(files.begin(), files.end(), name) != files.end());
+        ++seen;
+      }
+    }
+  }
+  CHECK(seen == 4);
+}
