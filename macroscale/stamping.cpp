@@ -379,8 +379,9 @@ StampingResult run_stamping(const StampingSpec& spec, const mesoscale::FabricPro
   const Problems of_fabric = mesoscale::check(fabric);
   problems.insert(problems.end(), of_fabric.begin(), of_fabric.end());
   if (!problems.empty()) throw InputError(std::move(problems));
-  const StampingSpec loaded = with_tools_loaded(spec, fabric.thickness);
-  return Run(loaded, fabric, friction, control).result();
+  for (const auto* file : {&spec.punch.file, &spec.die.file, &spec.binder.file})
+    if (*file && !(*file)->loaded) throw std::logic_error("run_stamping: a tool file was not loaded");
+  return Run(spec, fabric, friction, control).result();
 }
 
 }  // namespace heddle::macroscale

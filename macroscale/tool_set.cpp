@@ -9,7 +9,6 @@
 #include <tbb/parallel_reduce.h>
 
 #include "macroscale/blank.h"
-#include "macroscale/solve.h"
 
 namespace heddle::macroscale {
 
@@ -59,33 +58,11 @@ Shape shape_of_numbers(const StampingSpec& spec, Role role) {
 const std::optional<ToolFileSpec>& file_of(const StampingSpec& spec, Role role) {
   return role == Role::punch ? spec.punch.file : role == Role::die ? spec.die.file : spec.binder.file;
 }
-std::optional<ToolFileSpec>& file_of(StampingSpec& spec, Role role) {
-  return role == Role::punch ? spec.punch.file : role == Role::die ? spec.die.file : spec.binder.file;
-}
-
 std::string name_of(Role role) {
   return role == Role::punch ? "punch" : role == Role::die ? "die" : "binder";
 }
 std::string key_of(Role role) {
   return "tools." + name_of(role);
-}
-
-constexpr std::array<Role, 3> roles = {Role::punch, Role::die, Role::binder};
-
-std::array<double, 2> extent(const Outline& outline) {
-  std::array<double, 2> size{};
-  for (std::size_t c = 0; c < 2; ++c) {
-    const auto [low, high] =
-        std::minmax_element(outline.outer.begin(), outline.outer.end(),
-                            [c](const Point2& a, const Point2& b) { return a[c] < b[c]; });
-    size[c] = (*high)[c] - (*low)[c];
-  }
-  return size;
-}
-
-// Longest way of a tool in one step: the punch's, which also bounds how a node can be carried.
-double tool_step(const StampingSpec& spec) {
-  return spec.process.stroke / spec.process.steps;
 }
 
 Shape touching(const StampingSpec& spec, Role role) {
@@ -176,27 +153,6 @@ Problems check_hold(const StampingSpec& spec) {
 }
 
 }  // namespace
-
-StampingSpec with_tools_loaded(StampingSpec spec, double thickness) {
-  Problems problems;
-  const double half_width = required_half_width(tool_step(spec), thickness, SolveOptions{}.largest_increment);
-  for (const Role role : roles) {
-    auto& file = file_of(spec, role);
-    if (!file || file->loaded) continue;
-    const Expectation expected{key_of(role), extent(outline_of(spec.blank)), spec.process.stroke};
-    try {
-      LoadedTool tool = load_tool(file->source, expected);
-      const ToolBandSpec band{.voxel = file->voxel, .half_width = half_width};
-      auto field = std::make_shared<const ToolBand>(tool_band(tool.mesh, band, key_of(role)));
-      file->loaded =
-          std::make_shared<const LoadedToolFile>(LoadedToolFile{std::move(tool), std::move(field)});
-    } catch (const InputError& error) {
-      problems.insert(problems.end(), error.problems().begin(), error.problems().end());
-    }
-  }
-  if (!problems.empty()) throw InputError(std::move(problems));
-  return spec;
-}
 
 Problems check_tools(const StampingSpec& spec, double thickness) {
   Problems problems = check_passage(spec, Role::die, thickness);

@@ -15,12 +15,6 @@ struct LoadedToolFile {
   std::shared_ptr<const ToolBand> band;  ///< in the file's own frame
 };
 
-/// The specification with every tool file read, checked and turned into a distance field
-/// (ToolFileSpec::loaded).
-/// @param thickness  of the stress-free fabric, which the field must reach past [m]
-/// @throws InputError  with the problems of all files
-StampingSpec with_tools_loaded(StampingSpec spec, double thickness);
-
 /// What the tool files have to fit: each other on the whole stroke, the fabric between them, the blank.
 /// Distances are taken from the vertices of one tool to the other at nine positions of the stroke.
 /// @param spec       with its tools loaded; nothing is looked at where all tools are shapes

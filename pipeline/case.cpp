@@ -8,6 +8,7 @@
 #include "core/text_file.h"
 #include "core/units.h"
 #include "friction/calibrate.h"
+#include "macroscale/tool_loading.h"
 #include "macroscale/tool_set.h"
 #include "pipeline/outputs.h"
 

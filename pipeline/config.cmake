@@ -5,4 +5,4 @@ add_library(heddle::config ALIAS heddle_config)
 target_compile_definitions(heddle_config PRIVATE HEDDLE_VERSION="${PROJECT_VERSION}")
 target_link_libraries(heddle_config
   PUBLIC heddle::core heddle::friction heddle::mesoscale heddle::macroscale
-  PRIVATE heddle::output yaml-cpp CLI11::CLI11 heddle_warnings)
+  PRIVATE heddle::output heddle::tool_files yaml-cpp CLI11::CLI11 heddle_warnings)
