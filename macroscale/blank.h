@@ -69,9 +69,7 @@ struct Blank {
   /// Node of grid lines i, j; -1 where trimming left none.
   int node(int i, int j) const { return node_at[i * (nv + 1) + j]; }
   /// Quad between lines i, i + 1 and j, j + 1; -1 outside the grid and where trimming left none.
-  int quad(int i, int j) const {
-    return i < 0 || j < 0 || i >= nu || j >= nv ? -1 : quad_at[i * nv + j];
-  }
+  int quad(int i, int j) const { return i < 0 || j < 0 || i >= nu || j >= nv ? -1 : quad_at[i * nv + j]; }
   double corner_area() const { return 0.25 * spacing[0] * spacing[1]; }  ///< of a whole cell [m^2]
   /// A point of the flat blank in its cell, or in the nearest one left [m].
   MaterialPoint locate(const Eigen::Vector2d& reference) const;
@@ -89,7 +87,8 @@ std::array<Corner, 4> corners_of(const std::array<int, 4>& quad);
 /// @param spacing  upper bound of the node spacing: ceil(extent / spacing) cells along each tow direction
 Blank make_blank(const Outline& outline, double spacing, double orientation, double z = 0.0);
 
-/// Rectangle of a given size along warp and weft, centred at the origin and turned as a whole: no cell is cut.
+/// Rectangle of a given size along warp and weft, centred at the origin and turned as a whole: no cell is
+/// cut.
 Blank make_blank(std::array<double, 2> size, double spacing, double orientation = 0.0, double z = 0.0);
 
 }  // namespace heddle::macroscale

@@ -65,11 +65,12 @@ void check_blank(Findings& f, const BlankSpec& blank, double tool_edge) {
     return;
   }
   const double half = reach_of(blank);
-  f.demand(half > tool_edge, (key + ".reach"), key, size_in_words(blank),
-           fmt::format("must reach beyond the edges of die and binder all round ({} from the punch axis; this "
-                       "reaches {})",
-                       mm(tool_edge), mm(half)),
-           "A blank that lies inside the opening is held by nothing: enlarge it, or the tools shrink.");
+  f.demand(
+      half > tool_edge, (key + ".reach"), key, size_in_words(blank),
+      fmt::format("must reach beyond the edges of die and binder all round ({} from the punch axis; this "
+                  "reaches {})",
+                  mm(tool_edge), mm(half)),
+      "A blank that lies inside the opening is held by nothing: enlarge it, or the tools shrink.");
   f.demand(blank.spacing > 0.0 && blank.spacing < 0.25 * half, "blank.spacing.range", "blank.spacing",
            mm(blank.spacing),
            fmt::format("must satisfy 0 < spacing < {} (an eighth of the blank)", mm(0.25 * half)),

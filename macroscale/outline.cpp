@@ -73,7 +73,8 @@ Outline circle(double radius, double chord_error, Point2 centre) {
   Outline outline;
   for (int k = 0; k < 8 * eighth; ++k) {
     // From the nearest axis, so that mirror images agree to the last bit.
-    const int quarter = (k + eighth) / (2 * eighth) % 4, rest = k - 2 * eighth * ((k + eighth) / (2 * eighth));
+    const int quarter = (k + eighth) / (2 * eighth) % 4,
+              rest = k - 2 * eighth * ((k + eighth) / (2 * eighth));
     const double angle = 0.25 * std::numbers::pi * rest / eighth;
     const double c = radius * std::cos(angle), s = radius * std::sin(angle);
     const std::array<Point2, 4> images = {{{c, s}, {-s, c}, {-c, -s}, {s, -c}}};
@@ -115,8 +116,8 @@ double ray_length(const Outline& outline, const Point2& direction) {
                  left_b = direction[0] * b[1] - direction[1] * b[0];
     if ((left_a > 0.0) == (left_b > 0.0)) continue;
     const double t = left_a / (left_a - left_b);
-    farthest = std::max(farthest, direction[0] * (a[0] + t * (b[0] - a[0])) +
-                                      direction[1] * (a[1] + t * (b[1] - a[1])));
+    farthest = std::max(
+        farthest, direction[0] * (a[0] + t * (b[0] - a[0])) + direction[1] * (a[1] + t * (b[1] - a[1])));
   }
   return farthest;
 }

@@ -77,8 +77,9 @@ double shear_symmetry_gap(const Blank& blank, const std::vector<double>& shear) 
     const auto [i, j] = blank.grid[node];
     const double value = shear[node];
     size = std::max(size, std::abs(value));
-    gap = std::max({gap, std::abs(value + shear[blank.node(n - i, j)]),
-                    std::abs(value + shear[blank.node(i, n - j)]), std::abs(value - shear[blank.node(j, i)])});
+    gap =
+        std::max({gap, std::abs(value + shear[blank.node(n - i, j)]),
+                  std::abs(value + shear[blank.node(i, n - j)]), std::abs(value - shear[blank.node(j, i)])});
   }
   return size > 0.0 ? gap / size : 0.0;
 }
@@ -97,8 +98,7 @@ double draw_in_symmetry_gap(const Blank& blank, const State& state) {
     size = std::max(size, std::abs(value));
     for (const Eigen::Matrix2d& image : images) {
       const Eigen::Matrix2d map = to_tows.transpose() * image * to_tows;
-      const double other =
-          draw_in_at(blank, state, blank.locate(map * edge.reference), map * edge.inward);
+      const double other = draw_in_at(blank, state, blank.locate(map * edge.reference), map * edge.inward);
       gap = std::max(gap, std::abs(value - other));
     }
   }

@@ -127,16 +127,16 @@ struct BlankState {
 };
 
 struct StampingSummary {
-  double peak_punch_force = 0.0;             ///< [N]
-  double shear_angle_max = 0.0;              ///< [rad]
-  double draw_in_max = 0.0;                  ///< [m]
-  std::array<double, 8> draw_in_rays{};      ///< along rays at 0, 45, ... 315 deg to x: inward at the edge [m]
-  double energy_residual_max = 0.0;          ///< [-]
-  double force_balance_residual_max = 0.0;   ///< [-]
+  double peak_punch_force = 0.0;            ///< [N]
+  double shear_angle_max = 0.0;             ///< [rad]
+  double draw_in_max = 0.0;                 ///< [m]
+  std::array<double, 8> draw_in_rays{};     ///< along rays at 0, 45, ... 315 deg to x: inward at the edge [m]
+  double energy_residual_max = 0.0;         ///< [-]
+  double force_balance_residual_max = 0.0;  ///< [-]
   double numerical_dissipation_share = 0.0;  ///< of the punch work [-]
   double twist_share = 0.0;                  ///< largest share of the twist control in the stored energy [-]
-  double symmetry_gap_shear =
-      0.0;  ///< 8 symmetries of the square about the tows, share of the maximum [-]; < 0: the grid has not got them
+  double symmetry_gap_shear = 0.0;  ///< 8 symmetries of the square about the tows, share of the maximum [-];
+                                    ///< < 0: the grid has not got them
   double symmetry_gap_draw_in = 0.0;
   double friction_work_outside = 0.0;  ///< share of friction work outside the calibrated box [-]
   bool falling_branch = false;         ///< the law fell with speed somewhere: the solution may not be unique

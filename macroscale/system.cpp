@@ -76,7 +76,8 @@ double System::bending_stiffness(const TowTriple& t) const {
 double System::twist_stiffness(int quad) const {
   const double mean = 0.5 * (scene_.fabric->bending[0](scene_.blank_temperature) +
                              scene_.fabric->bending[1](scene_.blank_temperature));
-  return scene_.blank.share[quad] * (twist_share * mean / (scene_.blank.spacing[0] * scene_.blank.spacing[1]));
+  return scene_.blank.share[quad] *
+         (twist_share * mean / (scene_.blank.spacing[0] * scene_.blank.spacing[1]));
 }
 
 double System::tool_position(const StepData& step, const VectorXd& x, int k) const {

@@ -69,7 +69,8 @@ class System {
   ToolContact tool_contact(const StepData& step, const Eigen::VectorXd& x, int k, int i) const;
   /// Velocity of node i against tool k over the step [m/s].
   Eigen::Vector3d relative_velocity(const StepData& step, const Eigen::VectorXd& x, int k, int i) const;
-  /// Corner law of this step in a whole cell (time step and rate term included); `trimmed` gives a cut cell's.
+  /// Corner law of this step in a whole cell (time step and rate term included); `trimmed` gives a cut
+  /// cell's.
   CornerLaw corner_law(const StepData& step) const;
 
   const Curve& compaction() const { return compaction_; }

@@ -45,8 +45,8 @@ struct Case {
   std::optional<FrictionTestSpec> friction_test;
   std::optional<macroscale::StampingSpec> stamping;
   std::optional<OrientationStudySpec> orientation_study;  ///< runs the stamping once an angle
-  std::vector<std::string> notes;  ///< keys not used, and values that are assumed
-  Settings settings;               ///< every key behind the above
+  std::vector<std::string> notes;                         ///< keys not used, and values that are assumed
+  Settings settings;                                      ///< every key behind the above
 };
 
 /// Reads a configuration file with --set applied, checks every key and the keys against each other.

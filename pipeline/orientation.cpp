@@ -102,9 +102,10 @@ std::string pictures(const OrientationFindings& findings) {
   for (std::size_t k = 0; k < findings.blanks.size(); ++k) {
     const OrientedBlank& blank = findings.blanks[k];
     if (k % 2 == 0) out += "<div class=\"pair\">\n";
-    out += figure(top_picture(blank.result.final_state, largest),
-                  fmt::format("Warp at {}° to x{}.", angle_text(blank.angle),
-                              blank.result.summary.completed ? "" : " (stopped before the end of the stroke)"));
+    out +=
+        figure(top_picture(blank.result.final_state, largest),
+               fmt::format("Warp at {}° to x{}.", angle_text(blank.angle),
+                           blank.result.summary.completed ? "" : " (stopped before the end of the stroke)"));
     if (k % 2 == 1 || k + 1 == findings.blanks.size()) out += "</div>\n";
   }
   return out;
@@ -173,9 +174,10 @@ std::string blank_table(const std::vector<OrientedBlank>& blanks) {
 std::string sensitivity_table(const std::vector<Sensitivity>& all) {
   std::vector<std::vector<std::string>> rows;
   for (const Sensitivity& s : all)
-    rows.push_back({s.quantity,
-                    std::abs(s.per_degree) < 1e-12 ? "0" : signed_number(s.per_degree, 3) + " " + s.unit + "/°",
-                    percent(s.range)});
+    rows.push_back(
+        {s.quantity,
+         std::abs(s.per_degree) < 1e-12 ? "0" : signed_number(s.per_degree, 3) + " " + s.unit + "/°",
+         percent(s.range)});
   return table({"Result", "Change per degree (line through all angles)", "Range over its mean"}, rows);
 }
 
@@ -185,9 +187,9 @@ std::string sample_table(const std::vector<OrientedSample>& samples) {
     rows.push_back({angle_text(s.law.orientation) + "°", fmt::format("{:.4f}", s.law.friction_coefficient),
                     significant(s.law.pull_force, 5), significant(s.finite_element, 5),
                     signed_number(100.0 * (s.finite_element / s.law.pull_force - 1.0), 2) + " %"});
-  return table({"Warp to the pull", "μ of the law", "Pull by the law, N", "Pull by finite elements, N",
-                "Difference"},
-               rows);
+  return table(
+      {"Warp to the pull", "μ of the law", "Pull by the law, N", "Pull by finite elements, N", "Difference"},
+      rows);
 }
 
 std::string list(const std::vector<std::string>& texts) {
@@ -208,7 +210,8 @@ OrientedBlank stamp(const Case& a_case, double angle, const mesoscale::FabricPro
   Progress progress("blank at " + angle_text(angle) + " deg", spec.process.steps,
                     progress_style_of_standard_error(quiet), std::cerr);
   const auto observe = [&](int step, int, const macroscale::HistoryRow& row, const macroscale::BlankState&) {
-    progress.update(step, fmt::format("punch {:.1f} mm, {:.0f} N", 1e3 * row.punch_displacement, row.punch_force));
+    progress.update(step,
+                    fmt::format("punch {:.1f} mm, {:.0f} N", 1e3 * row.punch_displacement, row.punch_force));
   };
   blank.result = folder.stage("blank_" + blank.id,
                               [&] { return macroscale::run_stamping(spec, fabric, model, observe); });
@@ -219,9 +222,9 @@ OrientedBlank stamp(const Case& a_case, double angle, const mesoscale::FabricPro
   folder.write(place + "summary.json", summary_json(record));
   folder.write(place + "history.csv", history_csv(blank.result.history));
   folder.write(place + "blank.vtu", vtu(mesh_of(blank.result.final_state)));
-  folder.log(fmt::format("blank at {} deg: {} steps, {} Newton iterations, peak {:.1f} N{}", angle_text(angle),
-                         blank.result.summary.steps, blank.result.summary.newton_iterations,
-                         blank.result.summary.peak_punch_force,
+  folder.log(fmt::format("blank at {} deg: {} steps, {} Newton iterations, peak {:.1f} N{}",
+                         angle_text(angle), blank.result.summary.steps,
+                         blank.result.summary.newton_iterations, blank.result.summary.peak_punch_force,
                          blank.result.summary.completed ? "" : ", stopped: " + blank.result.summary.failure));
   return blank;
 }
@@ -235,8 +238,7 @@ OrientedSample pull(const Case& a_case, double angle, const mesoscale::FabricPro
   row.velocity = 16.6e-3;
   row.normal_force = 1500.0;
   row.orientation = angle;
-  const auto law =
-      friction::run_friction_test(model, row, friction.rig, area_function(friction, &fabric));
+  const auto law = friction::run_friction_test(model, row, friction.rig, area_function(friction, &fabric));
   OrientedSample sample;
   sample.law.name = row.name;
   sample.law.velocity = row.velocity;
@@ -336,22 +338,28 @@ std::string orientation_samples_csv(const std::vector<OrientedSample>& samples) 
 std::string orientation_html(const OrientationFindings& findings) {
   std::string out = fmt::format(
       "<!doctype html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\">\n"
-      "<meta name=\"viewport\" content=\"width=device-width, initial-scale=1\">\n<title>{0} · heddle</title>\n"
-      "<style>{1}</style>\n</head>\n<body>\n<main>\n<header>\n<p class=\"kind\">heddle · Orientation study</p>\n"
+      "<meta name=\"viewport\" content=\"width=device-width, initial-scale=1\">\n<title>{0} · "
+      "heddle</title>\n"
+      "<style>{1}</style>\n</head>\n<body>\n<main>\n<header>\n<p class=\"kind\">heddle · Orientation "
+      "study</p>\n"
       "<h1>{0}</h1>\n<p class=\"lead\">{2}</p>\n</header>\n",
       escape(findings.name), report_style(), escape(findings.description));
   out += "<section>\n<h2>What orientation changes</h2>\n" + sensitivity_table(sensitivities(findings)) +
          "</section>\n";
   if (!findings.blanks.empty()) {
-    out += "<section>\n<h2>The formed blanks</h2>\n<p>Each from above, coloured by the size of its shear angle on "
-           "one scale; white lines follow tows, the dashed line is the flat blank. The tows shear where they run at "
-           "45° to the radius, so the four lobes turn with the tows while the outline stays.</p>\n" +
-           pictures(findings) + "</section>\n<section>\n<h2>Force and draw-in</h2>\n<div class=\"pair\">\n" +
-           figure(force_chart_of(findings.blanks), "Punch force over the stroke, one line an orientation.") +
-           figure(edge_chart_of(findings.blanks),
-                  "Draw-in at the end of the stroke, around the edge of the blank. Corners, which have no inward "
-                  "direction, are left out.") +
-           "</div>\n" + blank_table(findings.blanks) + "</section>\n";
+    out +=
+        "<section>\n<h2>The formed blanks</h2>\n<p>Each from above, coloured by the size of its shear angle "
+        "on "
+        "one scale; white lines follow tows, the dashed line is the flat blank. The tows shear where they "
+        "run at "
+        "45° to the radius, so the four lobes turn with the tows while the outline stays.</p>\n" +
+        pictures(findings) + "</section>\n<section>\n<h2>Force and draw-in</h2>\n<div class=\"pair\">\n" +
+        figure(force_chart_of(findings.blanks), "Punch force over the stroke, one line an orientation.") +
+        figure(
+            edge_chart_of(findings.blanks),
+            "Draw-in at the end of the stroke, around the edge of the blank. Corners, which have no inward "
+            "direction, are left out.") +
+        "</div>\n" + blank_table(findings.blanks) + "</section>\n";
   }
   if (!findings.samples.empty())
     out += "<section>\n<h2>Friction samples</h2>\n" + sample_table(findings.samples) + "</section>\n";
@@ -362,7 +370,8 @@ std::string orientation_html(const OrientationFindings& findings) {
 }
 
 int run_orientation_study(const RunOptions& options, const Case& a_case) {
-  RunFolder folder(a_case, options.output.empty() ? std::filesystem::path("out") / a_case.name : options.output,
+  RunFolder folder(a_case,
+                   options.output.empty() ? std::filesystem::path("out") / a_case.name : options.output,
                    options.force);
   const auto cell = folder.stage("mesoscale", [&] { return mesoscale::analyse(*a_case.cell); });
   folder.write("mesoscale/fabric.json", fabric_json(cell.fabric));
@@ -371,9 +380,10 @@ int run_orientation_study(const RunOptions& options, const Case& a_case) {
 
   OrientationFindings findings;
   findings.name = a_case.name;
-  findings.description = fmt::format("A {} blank of {} weave cut with its warp at {} angles to x, stamped {:g} mm deep.",
-                                     blank_in_words(a_case.stamping->blank), a_case.cell->weave.pattern,
-                                     a_case.orientation_study->blanks.size(), 1e3 * a_case.stamping->process.stroke);
+  findings.description =
+      fmt::format("A {} blank of {} weave cut with its warp at {} angles to x, stamped {:g} mm deep.",
+                  blank_in_words(a_case.stamping->blank), a_case.cell->weave.pattern,
+                  a_case.orientation_study->blanks.size(), 1e3 * a_case.stamping->process.stroke);
   for (const double angle : a_case.orientation_study->blanks) {
     findings.blanks.push_back(stamp(a_case, angle, cell.fabric, friction.model, folder, options.quiet));
     folder.write("table.csv", orientation_table_csv(findings.blanks));
@@ -386,12 +396,15 @@ int run_orientation_study(const RunOptions& options, const Case& a_case) {
   folder.write("friction/orientation.csv", orientation_samples_csv(findings.samples));
   findings.notes.push_back(
       "No friction law of this version holds an orientation, so the law's mu is the same at every angle by "
-      "construction; the paper measured 0/90 to 90/0 and found no effect of orientation worth a term (section 2). "
-      "What the finite elements add is the sample itself: tows at an angle to the pull shear between the plates.");
-  findings.notes.push_back(fmt::format(
-      "Node spacing is at most {:g} mm here: angles compare with one another; the shipped case gives the force "
-      "itself at 4.5 mm.",
-      1e3 * a_case.stamping->blank.spacing));
+      "construction; the paper measured 0/90 to 90/0 and found no effect of orientation worth a term "
+      "(section 2). "
+      "What the finite elements add is the sample itself: tows at an angle to the pull shear between the "
+      "plates.");
+  findings.notes.push_back(
+      fmt::format("Node spacing is at most {:g} mm here: angles compare with one another; the shipped case "
+                  "gives the force "
+                  "itself at 4.5 mm.",
+                  1e3 * a_case.stamping->blank.spacing));
   findings.notes.insert(findings.notes.end(), friction.notes.begin(), friction.notes.end());
   findings.notes.insert(findings.notes.end(), a_case.notes.begin(), a_case.notes.end());
   folder.write("report.html", orientation_html(findings));

@@ -51,8 +51,8 @@ std::string orientation_samples_csv(const std::vector<OrientedSample>& samples);
 std::string orientation_html(const OrientationFindings& findings);
 
 /// Stamps the blank at each angle of `orientation_study.blanks` and pulls a sample at each angle of
-/// `orientation_study.friction`. Writes table.csv, report.html, friction/ and cases/ID/. Returns an exit code;
-/// a stamping that stopped leaves its files and the study goes on.
+/// `orientation_study.friction`. Writes table.csv, report.html, friction/ and cases/ID/. Returns an exit
+/// code; a stamping that stopped leaves its files and the study goes on.
 int run_orientation_study(const RunOptions& options, const Case& a_case);
 
 }  // namespace heddle::pipeline

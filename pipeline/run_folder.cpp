@@ -71,8 +71,8 @@ RunFolder::RunFolder(const Case& a_case, fs::path folder, bool force) : path_(st
     throw InputError({{"output.folder.create", "-o", path_.string(),
                        "cannot be created: " + error.code().message(), "Choose another folder with -o."}});
   }
-  for (const char* name : {"mesoscale", "friction", "macroscale", "inputs", "cases", "table.csv", "summary.json", "report.html",
-                           "manifest.json", "log.txt"})
+  for (const char* name : {"mesoscale", "friction", "macroscale", "inputs", "cases", "table.csv",
+                           "summary.json", "report.html", "manifest.json", "log.txt"})
     fs::remove_all(path_ / name);
   write_resolved(a_case, path_);
 }

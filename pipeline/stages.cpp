@@ -198,9 +198,11 @@ std::string blank_in_words(const macroscale::BlankSpec& blank) {
 
 double mean_binder_pressure(const macroscale::StampingSpec& spec) {
   const double flat = spec.binder.inner_radius + spec.binder.edge_fillet;
-  double area = macroscale::area({macroscale::outline_of(spec.blank).outer, {}}) - std::numbers::pi * flat * flat;
+  double area =
+      macroscale::area({macroscale::outline_of(spec.blank).outer, {}}) - std::numbers::pi * flat * flat;
   for (const macroscale::RoundHole& hole : spec.blank.holes)
-    if (std::hypot(hole.centre[0], hole.centre[1]) > flat) area -= std::numbers::pi * hole.radius * hole.radius;
+    if (std::hypot(hole.centre[0], hole.centre[1]) > flat)
+      area -= std::numbers::pi * hole.radius * hole.radius;
   return spec.process.binder_force / area;
 }
 
