@@ -16,19 +16,12 @@ struct OrientedBlank {
   macroscale::StampingResult result;
 };
 
-/// One friction sample cut at an angle to its pull: what the law says, and what the finite elements find.
-struct OrientedSample {
-  FrictionTestRow law;           ///< at its pressure and speed
-  double finite_element = 0.0;   ///< pull force with the sample as a sheet of tows [N]
-  double pressure_spread = 0.0;  ///< largest relative deviation of nodal pressure from N / A [-]
-};
-
 /// What is shown of the study.
 struct OrientationFindings {
   std::string name;         ///< of the case
   std::string description;  ///< one sentence
   std::vector<OrientedBlank> blanks;
-  std::vector<OrientedSample> samples;
+  std::vector<FrictionTestRow> samples;  ///< at the law, F = 2 mu N
   std::vector<std::string> notes;
 };
 
@@ -45,8 +38,6 @@ std::vector<Sensitivity> sensitivities(const OrientationFindings& findings);
 
 /// One row a blank: table.csv.
 std::string orientation_table_csv(const std::vector<OrientedBlank>& blanks);
-/// One row a sample: friction/orientation.csv.
-std::string orientation_samples_csv(const std::vector<OrientedSample>& samples);
 /// The page: blanks side by side, edges, forces, tables.
 std::string orientation_html(const OrientationFindings& findings);
 
