@@ -331,7 +331,7 @@ std::string orientation_html(const OrientationFindings& findings) {
     out += "<section>\n<h2>Friction samples</h2>\n" + sample_table(findings.samples) + "</section>\n";
   out += "<section>\n<h2>What it rests on</h2>\n" + list(findings.notes) + "</section>\n";
   return out +
-         "<footer>Written by heddle. Numbers: table.csv, friction/orientation.csv and cases/ in the same "
+         "<footer>Written by heddle. Numbers: table.csv, friction/friction_test.csv and cases/ in the same "
          "folder.</footer>\n</main>\n</body>\n</html>\n";
 }
 
@@ -359,7 +359,7 @@ int run_orientation_study(const RunOptions& options, const Case& a_case) {
       findings.samples.push_back(pull(a_case, angle, cell.fabric, friction.model));
     return 0;
   });
-  folder.write("friction/orientation.csv", friction_test_csv(findings.samples));
+  folder.write("friction/friction_test.csv", friction_test_csv(findings.samples));
   findings.notes.push_back(
       "No friction law of this version holds an orientation, so mu is the same at every angle by "
       "construction. "
