@@ -197,6 +197,55 @@ TEST_CASE("V2: on turned and trimmed blanks uniform stretch and shear store dens
   CHECK(mass == Approx(0.7 * surface).epsilon(1e-12));
 }
 
+TEST_CASE("on a trimmed blank residual, matrix and ledger count every cell by its share",
+          "[macroscale][blank][derivative]") {
+  const auto fabric = make_fabric({.rate_consistency = 5.0});
+  Scene scene;
+  scene.blank = make_blank(hard_outline(), 30e-3, 17.0 * degree);
+  scene.fabric = &fabric;
+  System system(scene);
+  const State start = initial_state(scene);
+  StepData step;
+  step.start = &start;
+  step.dt = 0.01;
+  step.target = start.x;
+  // Small waves and stretch in every direction; d is another such field.
+  const auto waves = [&](double size, double phase) {
+    VectorXd x = VectorXd::Zero(scene.unknowns());
+    for (int k = 0; k < x.size(); ++k) x[k] = size * std::sin(1.7 * k + phase);
+    return x;
+  };
+  const VectorXd x = start.x + waves(2e-4, 0.0), d = waves(1.0, 1.0);
+  const double h = 1e-7;
+  const double slope =
+      (system.potential(step, x + h * d).total() - system.potential(step, x - h * d).total()) / (2.0 * h);
+  CHECK(system.full_gradient(step, x).dot(d) == Approx(slope).epsilon(1e-6));
+
+  const VectorXd expected =
+      (system.full_gradient(step, x + h * d) - system.full_gradient(step, x - h * d)) / (2.0 * h);
+  system.assemble(step, x, Filter::none);
+  const auto& pattern = system.solver().pattern();
+  const auto values = system.solver().values();
+  VectorXd product = VectorXd::Zero(d.size());
+  for (int j = 0; j < pattern.size; ++j)
+    for (int k = pattern.column_start[j]; k < pattern.column_start[j + 1]; ++k) {
+      product[pattern.row[k]] += values[k] * d[j];
+      if (pattern.row[k] != j) product[j] += values[k] * d[pattern.row[k]];
+    }
+  CHECK((product - expected).norm() < 1e-5 * expected.norm());
+
+  State end = start;
+  end.x = x;
+  end.v = (x - start.x) / step.dt;
+  step.friction.assign(0, {});
+  const StepLedger ledger = account(system, step, end).ledger;
+  const PotentialTerms w = system.potential(step, x);
+  CHECK(ledger.tow == Approx(w.tow).epsilon(1e-10));
+  CHECK(ledger.shear == Approx(w.shear).epsilon(1e-10));
+  CHECK(ledger.twist == Approx(w.twist).epsilon(1e-10));
+  CHECK(ledger.bending == Approx(w.bending).epsilon(1e-10));
+}
+
 TEST_CASE("V2: a plate presses a trimmed blank evenly, and its force is p times the outline's area",
           "[macroscale][blank][verification]") {
   const auto fabric = make_fabric({});
