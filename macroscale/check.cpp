@@ -16,6 +16,9 @@ class Findings {
               std::string way_out) {
     if (!holds) problems_.push_back({id, key, std::move(value), std::move(rule), std::move(way_out)});
   }
+  void add(Problems more) {
+    for (Problem& problem : more) problems_.push_back(std::move(problem));
+  }
   Problems take() { return std::move(problems_); }
 
  private:
@@ -42,7 +45,7 @@ const char* size_key(const BlankSpec& blank) {
 bool has_area(const BlankSpec& blank) {
   if (blank.shape == BlankShape::rectangle) return blank.size[0] > 0.0 && blank.size[1] > 0.0;
   if (blank.shape == BlankShape::circle) return blank.radius > 0.0;
-  return blank.polygon.outer.size() >= 3 && area({blank.polygon.outer, {}}) > 0.0;
+  return blank.polygon.outer.size() >= 3 && area(polygon(blank.polygon.outer)) > 0.0;
 }
 
 // How far the blank reaches from the punch axis in every direction [m].
@@ -64,6 +67,10 @@ void check_blank(Findings& f, const BlankSpec& blank, double tool_edge) {
   if (!has_area(blank)) {
     f.demand(false, (key + ".area"), key, size_in_words(blank), "must enclose an area",
              "Give three points or more, in order along the edge.");
+    return;
+  }
+  if (Problems crossing = check(polygon(outline_of(blank).outer), key); !crossing.empty()) {
+    f.add(std::move(crossing));
     return;
   }
   const double half = reach_of(blank);

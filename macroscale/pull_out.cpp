@@ -12,19 +12,10 @@ namespace heddle::macroscale {
 
 namespace {
 
-// The holder grips the leading edge: its nodes, or in a sample cut at an angle those within half a spacing.
-std::vector<int> held_nodes(const PullOutSpec& spec, const Blank& blank) {
-  const double grip = 0.5 * (spec.size[0] - std::max(blank.spacing[0], blank.spacing[1]));
-  std::vector<int> held;
-  for (int i = 0; i < blank.nodes(); ++i)
-    if (blank.reference[i].x() >= grip) held.push_back(i);
-  return held;
-}
-
 Scene pull_out_scene(const PullOutSpec& spec, const mesoscale::FabricProperties& fabric,
                      const friction::Model& friction) {
   Scene scene;
-  scene.blank = make_blank(rectangle(spec.size), spec.spacing, spec.orientation);
+  scene.blank = make_blank(spec.size, spec.spacing);
   scene.fabric = &fabric;
   scene.friction = &friction;
   const double half = 0.5 * fabric.thickness;
@@ -36,9 +27,9 @@ Scene pull_out_scene(const PullOutSpec& spec, const mesoscale::FabricProperties&
   scene.slip_smoothing = std::max(2e-4 * spec.speed, 1e-6);
   scene.contact_pressure = spec.contact_pressure;
   scene.held.assign(3 * scene.blank.nodes(), 0);
-  for (int node : held_nodes(spec, scene.blank)) {
-    scene.held[3 * node] = 1;      // pulled along x
-    scene.held[3 * node + 1] = 1;  // the holder keeps its width
+  for (int j = 0; j <= scene.blank.nv; ++j) {
+    scene.held[3 * scene.blank.node(scene.blank.nu, j)] = 1;      // pulled along x
+    scene.held[3 * scene.blank.node(scene.blank.nu, j) + 1] = 1;  // the holder keeps its width
   }
   return scene;
 }
@@ -60,9 +51,9 @@ PullOutResult run_pull_out(const PullOutSpec& spec, const mesoscale::FabricPrope
   State state = initial_state(scene);
   close_plates(system, state, spec);
 
-  const std::vector<int> held = held_nodes(spec, scene.blank);
   const auto pull = [&](double time, Eigen::VectorXd& x) {
-    for (int node : held) {
+    for (int j = 0; j <= scene.blank.nv; ++j) {
+      const int node = scene.blank.node(scene.blank.nu, j);
       x[3 * node] = scene.blank.reference[node].x() + spec.speed * time;
       x[3 * node + 1] = scene.blank.reference[node].y();
     }

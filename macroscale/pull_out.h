@@ -13,7 +13,6 @@ namespace heddle::macroscale {
 /// a plate under a held load, and its leading edge is drawn out at constant speed.
 struct PullOutSpec {
   std::array<double, 2> size{0.1, 0.1};  ///< between the plates, along the pull and across [m]
-  double orientation = 0.0;              ///< warp against the pull [rad]
   double spacing = 10e-3;                ///< upper bound of the node spacing [m]
   double normal_force = 1500.0;          ///< N [N]
   double speed = 16.67e-3;               ///< U [m/s]

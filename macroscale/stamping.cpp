@@ -364,8 +364,9 @@ Outline outline_of(const BlankSpec& blank) {
                     : blank.shape == BlankShape::circle  ? circle(blank.radius, chord * blank.radius)
                                                          : blank.polygon;
   for (const RoundHole& hole : blank.holes)
-    outline.holes.push_back(circle(hole.radius, 1e-3 * hole.radius, hole.centre).outer);
-  return outline;
+    if (hole.radius > 0.0)  // others are named by check()
+      outline.holes.push_back(circle(hole.radius, 1e-3 * hole.radius, hole.centre).outer);
+  return polygon(std::move(outline.outer), std::move(outline.holes));
 }
 
 StampingResult run_stamping(const StampingSpec& spec, const mesoscale::FabricProperties& fabric,

@@ -371,6 +371,14 @@ Problems check_clearance(const mesoscale::CellSpec& cell, const macroscale::Stam
            fmt::format("Open the die to at least {:.6g} mm.", 1e3 * (stamping.punch.radius + thickness))}};
 }
 
+/// Each angle names a folder of results.
+Problems check_distinct(const std::vector<double>& angles, const std::string& key) {
+  std::vector<double> sorted = angles;
+  std::sort(sorted.begin(), sorted.end());
+  if (std::adjacent_find(sorted.begin(), sorted.end()) == sorted.end()) return {};
+  return {{key + ".distinct", key, "", "must not hold an angle twice", "Leave the second one out."}};
+}
+
 Problems check_between_keys(const Case& a_case, const Problems& known) {
   const std::vector<std::string> cell_blocks{"weave", "cell", "fabric", "resin", "forming"};
   const std::vector<std::string> friction_blocks{"friction", "effects", "resin"};
@@ -386,6 +394,10 @@ Problems check_between_keys(const Case& a_case, const Problems& known) {
     append(problems, check_table(a_case.friction_test->data, false));
   }
   if (a_case.stamping && stamping_read) append(problems, macroscale::check(*a_case.stamping));
+  if (a_case.orientation_study) {
+    append(problems, check_distinct(a_case.orientation_study->blanks, "orientation_study.blanks"));
+    append(problems, check_distinct(a_case.orientation_study->friction, "orientation_study.friction"));
+  }
   if (a_case.cell && a_case.stamping && cell_read && stamping_read) {
     append(problems, check_clearance(*a_case.cell, *a_case.stamping));
   }

@@ -106,20 +106,21 @@ std::string description_of(const Case& a_case) {
   return fmt::format(
       "A {} blank of {} weave stamped {:.0f} mm deep into a hemisphere of {:.0f} mm radius "
       "in {:.2f} s.",
-      blank_in_words(s.blank), a_case.cell->weave.pattern, 1e3 * s.process.stroke,
-      1e3 * s.punch.radius, s.process.time / s.process.speed_scale);
+      blank_in_words(s.blank), a_case.cell->weave.pattern, 1e3 * s.process.stroke, 1e3 * s.punch.radius,
+      s.process.time / s.process.speed_scale);
 }
 
 std::vector<Condition> conditions_of(const Case& a_case) {
   if (!a_case.stamping) return {};
   const auto& s = *a_case.stamping;
-  return {{"Binder force", fmt::format("{:g} N", s.process.binder_force)},
-          {"Tool temperature", fmt::format("{:g} degC", s.process.tool_temperature - 273.15)},
-          {"Blank temperature", fmt::format("{:g} degC", s.process.blank_temperature - 273.15)},
-          {"Stroke",
-           fmt::format("{:g} mm in {:g} s", 1e3 * s.process.stroke, s.process.time / s.process.speed_scale)},
-          {"Blank", fmt::format("{}, warp at {:g} deg", blank_in_words(s.blank), degrees * s.blank.orientation)},
-          {"Steps", fmt::format("{} of equal stroke", s.process.steps)}};
+  return {
+      {"Binder force", fmt::format("{:g} N", s.process.binder_force)},
+      {"Tool temperature", fmt::format("{:g} degC", s.process.tool_temperature - 273.15)},
+      {"Blank temperature", fmt::format("{:g} degC", s.process.blank_temperature - 273.15)},
+      {"Stroke",
+       fmt::format("{:g} mm in {:g} s", 1e3 * s.process.stroke, s.process.time / s.process.speed_scale)},
+      {"Blank", fmt::format("{}, warp at {:g} deg", blank_in_words(s.blank), degrees * s.blank.orientation)},
+      {"Steps", fmt::format("{} of equal stroke", s.process.steps)}};
 }
 
 HeightField report_height(const mesoscale::HeightField& h) {

@@ -16,19 +16,12 @@ struct OrientedBlank {
   macroscale::StampingResult result;
 };
 
-/// One friction sample cut at an angle to its pull: what the law says, and what the finite elements find.
-struct OrientedSample {
-  FrictionTestRow law;           ///< at its pressure and speed
-  double finite_element = 0.0;   ///< pull force with the sample as a sheet of tows [N]
-  double pressure_spread = 0.0;  ///< largest relative deviation of nodal pressure from N / A [-]
-};
-
 /// What is shown of the study.
 struct OrientationFindings {
   std::string name;         ///< of the case
   std::string description;  ///< one sentence
   std::vector<OrientedBlank> blanks;
-  std::vector<OrientedSample> samples;
+  std::vector<FrictionTestRow> samples;  ///< at the law, F = 2 mu N
   std::vector<std::string> notes;
 };
 
@@ -45,14 +38,12 @@ std::vector<Sensitivity> sensitivities(const OrientationFindings& findings);
 
 /// One row a blank: table.csv.
 std::string orientation_table_csv(const std::vector<OrientedBlank>& blanks);
-/// One row a sample: friction/orientation.csv.
-std::string orientation_samples_csv(const std::vector<OrientedSample>& samples);
 /// The page: blanks side by side, edges, forces, tables.
 std::string orientation_html(const OrientationFindings& findings);
 
 /// Stamps the blank at each angle of `orientation_study.blanks` and pulls a sample at each angle of
-/// `orientation_study.friction`. Writes table.csv, report.html, friction/ and cases/ID/. Returns an exit code;
-/// a stamping that stopped leaves its files and the study goes on.
+/// `orientation_study.friction`. Writes table.csv, report.html, friction/ and cases/ID/. Returns an exit
+/// code; a stamping that stopped leaves its files and the study goes on.
 int run_orientation_study(const RunOptions& options, const Case& a_case);
 
 }  // namespace heddle::pipeline

@@ -27,8 +27,9 @@ constexpr double degree = std::numbers::pi / 180.0;
 // An outline with everything that can go wrong: a notch, a slanted side, holes of which one is smaller than a
 // cell.
 Outline hard_outline() {
-  Outline outline{{{-0.16, -0.15}, {0.14, -0.16}, {0.15, 0.02}, {0.11, 0.03}, {0.15, 0.06}, {0.02, 0.17}, {-0.16, 0.11}},
-                  {}};
+  Outline outline{
+      {{-0.16, -0.15}, {0.14, -0.16}, {0.15, 0.02}, {0.11, 0.03}, {0.15, 0.06}, {0.02, 0.17}, {-0.16, 0.11}},
+      {}};
   outline.holes.push_back(circle(0.03, 1e-5, {-0.04, 0.02}).outer);
   outline.holes.push_back(circle(2e-3, 1e-6, {0.061, -0.0705}).outer);
   return outline;
@@ -44,8 +45,7 @@ double total(const std::vector<double>& values) {
 
 double piece_area(const Blank& blank) {
   double sum = 0.0;
-  for (const CellPiece& piece : blank.pieces)
-    sum += area({{piece.corners.begin(), piece.corners.end()}, {}});
+  for (const CellPiece& piece : blank.pieces) sum += area({{piece.corners.begin(), piece.corners.end()}, {}});
   return sum * blank.spacing[0] * blank.spacing[1];
 }
 
@@ -84,9 +84,9 @@ TEST_CASE("a rectangle along its tows is the whole grid, with every share exactl
   const Blank plain = make_blank(std::array{0.32, 0.28}, 4.5e-3);
   CHECK(plain.nu == 72);
   CHECK(plain.nv == 63);
-  for (const auto& [outline, angle] : {std::pair{rectangle({0.32, 0.28}), 0.0},
-                                       std::pair{rectangle({0.28, 0.32}), 0.5 * std::numbers::pi},
-                                       std::pair{rectangle({0.32, 0.28}), std::numbers::pi}}) {
+  for (const auto& [outline, angle] :
+       {std::pair{rectangle({0.32, 0.28}), 0.0}, std::pair{rectangle({0.28, 0.32}), 0.5 * std::numbers::pi},
+        std::pair{rectangle({0.32, 0.28}), std::numbers::pi}}) {
     const Blank blank = make_blank(outline, 4.5e-3, angle);
     CHECK(blank.nodes() == 73 * 64);
     CHECK(blank.node(5, 7) == 5 * 64 + 7);
@@ -100,7 +100,8 @@ TEST_CASE("a rectangle along its tows is the whole grid, with every share exactl
     bool same = true;
     for (int i = 0; i < blank.nodes(); ++i) {
       const Vector3d& x = plain.reference[i];
-      same &= blank.reference[i].x() == c * x.x() - s * x.y() && blank.reference[i].y() == s * x.x() + c * x.y();
+      same &=
+          blank.reference[i].x() == c * x.x() - s * x.y() && blank.reference[i].y() == s * x.x() + c * x.y();
     }
     CHECK(same);
   }
@@ -139,7 +140,8 @@ TEST_CASE("a material point is found in its cell and moves with its corners", "[
   State state;
   state.x = moved(scene, [](const Vector3d& x) { return Vector3d(0.99 * x); });
   double largest = 0.0;
-  for (const EdgePoint& edge : blank.edge) largest = std::max(largest, -0.01 * edge.inward.dot(edge.reference));
+  for (const EdgePoint& edge : blank.edge)
+    largest = std::max(largest, -0.01 * edge.inward.dot(edge.reference));
   CHECK(largest > 1.3e-3);
   CHECK(largest_draw_in(blank, state) == Approx(largest).epsilon(1e-9));
 }
@@ -193,6 +195,55 @@ TEST_CASE("V2: on turned and trimmed blanks uniform stretch and shear store dens
   double mass = 0.0;
   for (int i = 0; i < scene.blank.nodes(); ++i) mass += system.mass(3 * i);
   CHECK(mass == Approx(0.7 * surface).epsilon(1e-12));
+}
+
+TEST_CASE("on a trimmed blank residual, matrix and ledger count every cell by its share",
+          "[macroscale][blank][derivative]") {
+  const auto fabric = make_fabric({.rate_consistency = 5.0});
+  Scene scene;
+  scene.blank = make_blank(hard_outline(), 30e-3, 17.0 * degree);
+  scene.fabric = &fabric;
+  System system(scene);
+  const State start = initial_state(scene);
+  StepData step;
+  step.start = &start;
+  step.dt = 0.01;
+  step.target = start.x;
+  // Small waves and stretch in every direction; d is another such field.
+  const auto waves = [&](double size, double phase) {
+    VectorXd x = VectorXd::Zero(scene.unknowns());
+    for (int k = 0; k < x.size(); ++k) x[k] = size * std::sin(1.7 * k + phase);
+    return x;
+  };
+  const VectorXd x = start.x + waves(2e-4, 0.0), d = waves(1.0, 1.0);
+  const double h = 1e-7;
+  const double slope =
+      (system.potential(step, x + h * d).total() - system.potential(step, x - h * d).total()) / (2.0 * h);
+  CHECK(system.full_gradient(step, x).dot(d) == Approx(slope).epsilon(1e-6));
+
+  const VectorXd expected =
+      (system.full_gradient(step, x + h * d) - system.full_gradient(step, x - h * d)) / (2.0 * h);
+  system.assemble(step, x, Filter::none);
+  const auto& pattern = system.solver().pattern();
+  const auto values = system.solver().values();
+  VectorXd product = VectorXd::Zero(d.size());
+  for (int j = 0; j < pattern.size; ++j)
+    for (int k = pattern.column_start[j]; k < pattern.column_start[j + 1]; ++k) {
+      product[pattern.row[k]] += values[k] * d[j];
+      if (pattern.row[k] != j) product[j] += values[k] * d[pattern.row[k]];
+    }
+  CHECK((product - expected).norm() < 1e-5 * expected.norm());
+
+  State end = start;
+  end.x = x;
+  end.v = (x - start.x) / step.dt;
+  step.friction.assign(0, {});
+  const StepLedger ledger = account(system, step, end).ledger;
+  const PotentialTerms w = system.potential(step, x);
+  CHECK(ledger.tow == Approx(w.tow).epsilon(1e-10));
+  CHECK(ledger.shear == Approx(w.shear).epsilon(1e-10));
+  CHECK(ledger.twist == Approx(w.twist).epsilon(1e-10));
+  CHECK(ledger.bending == Approx(w.bending).epsilon(1e-10));
 }
 
 TEST_CASE("V2: a plate presses a trimmed blank evenly, and its force is p times the outline's area",
@@ -290,7 +341,8 @@ void check_alike(const StampingResult& a, const StampingResult& b,
                  double shear_sign) {
   REQUIRE(a.summary.completed);
   REQUIRE(b.summary.completed);
-  for (double HistoryRow::*column : {&HistoryRow::punch_force, &HistoryRow::draw_in_max, &HistoryRow::shear_angle_max})
+  for (double HistoryRow::*column :
+       {&HistoryRow::punch_force, &HistoryRow::draw_in_max, &HistoryRow::shear_angle_max})
     CHECK(largest_gap(a, b, column) < 1e-6);
   const BlankState &x = a.final_state, &y = b.final_state;
   REQUIRE(x.position.size() == y.position.size());
@@ -319,7 +371,8 @@ TEST_CASE("V13: a 90/0 blank is the 0/90 blank turned", "[macroscale][blank][ver
   const StampingResult b = run_stamping(spec, fabric, coulomb());
   Eigen::Matrix3d quarter_turn;
   quarter_turn << 0, -1, 0, 1, 0, 0, 0, 0, 1;
-  check_alike(a, b, [](std::size_t n) { return n; }, quarter_turn, 1.0);
+  check_alike(
+      a, b, [](std::size_t n) { return n; }, quarter_turn, 1.0);
 }
 
 TEST_CASE("V13: a -45 blank is the mirror image of the +45 blank", "[macroscale][blank][verification]") {
@@ -357,8 +410,8 @@ TEST_CASE("V13: a quarter blank held on its planes of symmetry is a quarter of t
     scene.slip_smoothing = 1e-4;
     scene.tools = {{Role::punch, HemisphereShape{{0, 0, 0.75e-3}, 0.06}, Motion::driven, 0.0, 0.0},
                    {Role::die, RingShape{-0.75e-3, 0.065, 0.02, true}, Motion::fixed, 0.0, 0.0},
-                   {Role::binder, RingShape{0.75e-3, 0.085, 2e-3, false}, Motion::loaded, 400.0 * binder_share,
-                    20.0 * binder_share}};
+                   {Role::binder, RingShape{0.75e-3, 0.085, 2e-3, false}, Motion::loaded,
+                    400.0 * binder_share, 20.0 * binder_share}};
     // A triple across a plane of symmetry has its third node in the other half; left out on both sides.
     std::erase_if(scene.blank.triples, [&](const TowTriple& t) {
       return std::abs(scene.blank.reference[t.middle][t.direction]) < 1e-9;

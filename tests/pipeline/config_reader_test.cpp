@@ -187,6 +187,43 @@ TEST_CASE("a value set on the command line counts as if it stood in the file", "
   CHECK(read.stamping->process.stroke == 0.05);
 }
 
+TEST_CASE("blanks of any outline and lists of angles are read, and written back bit for bit",
+          "[pipeline][config]") {
+  const std::vector<std::string> shaped = {
+      "blank={shape: polygon, points: [[-160 mm, -0.15 m], [160 mm, -160 mm], [0 mm, 300 mm]], holes: [[0 "
+      "mm, 10 "
+      "mm, 5 mm]], orientation: 15 deg, spacing: 10 mm}",
+      "orientation_study={blanks: [0 deg, 45 deg], friction: [90 deg]}"};
+  const Case read = read_case_text(small_stamping, "x.yaml", "", shaped);
+  const macroscale::BlankSpec& blank = read.stamping->blank;
+  CHECK(blank.shape == macroscale::BlankShape::polygon);
+  REQUIRE(blank.polygon.outer.size() == 3);
+  CHECK(blank.polygon.outer[0] == macroscale::Point2{-0.16, -0.15});
+  REQUIRE(blank.holes.size() == 1);
+  CHECK(blank.holes[0].centre == macroscale::Point2{0.0, 0.01});
+  CHECK(blank.holes[0].radius == 0.005);
+  REQUIRE(read.orientation_study);
+  REQUIRE(read.orientation_study->blanks.size() == 2);
+  CHECK(read.orientation_study->blanks[1] == Approx(3.0 * blank.orientation));
+  const std::string resolved = pipeline::resolved_yaml(read.settings);
+  const Case again = read_case_text(resolved, "y.yaml", "");
+  CHECK(pipeline::resolved_yaml(again.settings) == resolved);
+  CHECK(again.stamping->blank.polygon.outer == blank.polygon.outer);
+
+  const auto ids = [&](const std::string& assignment) {
+    const Problems problems = problems_of(small_stamping, {assignment});
+    std::vector<std::string> found;
+    for (const auto& problem : problems) found.push_back(problem.id);
+    return found;
+  };
+  CHECK(ids("blank.shape=circle") == std::vector<std::string>{"blank.radius.required"});
+  CHECK(ids("blank.holes=[[0 mm, 1 mm]]") == std::vector<std::string>{"blank.holes.rows"});
+  CHECK(ids("orientation_study={blanks: 0 deg, friction: [0 deg]}") ==
+        std::vector<std::string>{"orientation_study.blanks.list"});
+  CHECK(ids("orientation_study={blanks: [0 deg, 15 deg, 0 deg], friction: [0 deg]}") ==
+        std::vector<std::string>{"orientation_study.blanks.distinct"});
+}
+
 TEST_CASE("a map set on the command line replaces the whole map", "[pipeline][config]") {
   const Problems problems = problems_of(small_stamping, {"process.punch={stroke: 50 mm}"});
   REQUIRE(problems.size() == 1);

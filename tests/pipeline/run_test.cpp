@@ -1,4 +1,5 @@
 // Whole runs: every shipped configuration at small size, through the same functions as the command line.
+#include <algorithm>
 #include <catch2/catch.hpp>
 
 #include <unistd.h>
@@ -219,4 +220,24 @@ TEST_CASE(
   CAPTURE(slow, middle, fast);
   CHECK(signature > 1.0);
   CHECK(signature < 2.5);
+}
+
+TEST_CASE("the orientation study stamps each blank, pulls each sample and reports both", "[pipeline][run]") {
+  const Scratch scratch;
+  std::vector<std::string> settings = with(small, "orientation_study.blanks=[0 deg, 45 deg]");
+  settings = with(settings, "process.steps=5");
+  REQUIRE(pipeline::run_case(options_for("orientation.yaml", scratch / "study", settings)) ==
+          pipeline::exit_done);
+  const fs::path study = scratch / "study";
+  for (const char* file : {"table.csv", "report.html", "friction/friction_test.csv",
+                           "cases/0_deg/history.csv", "cases/45_deg/blank.vtu", "cases/45_deg/summary.json"})
+    CHECK(fs::exists(study / file));
+  const std::string table = pipeline::read_file(study / "table.csv");
+  CHECK(std::count(table.begin(), table.end(), '\n') == 3);
+  const std::string samples = pipeline::read_file(study / "friction/friction_test.csv");
+  CHECK(std::count(samples.begin(), samples.end(), '\n') == 8);
+  // Tows at 45 degrees turn the draw-in from the middles of the sides to the corners.
+  CHECK(number(study / "cases/0_deg", "draw_in_max_mm") >
+        1.2 * number(study / "cases/45_deg", "draw_in_max_mm"));
+  CHECK_THAT(pipeline::read_file(study / "report.html"), Catch::Contains("at every angle by construction"));
 }
