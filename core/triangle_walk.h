@@ -13,8 +13,8 @@ double squared_distance(const Eigen::Vector3d& a, const Eigen::Vector3d& b, cons
                         const Eigen::Vector3d& place);
 
 /// Finds the nearest triangle of a mesh from one that is near: goes to the nearest of all that share a vertex
-/// with it until none is nearer. The end is the nearest triangle of all as long as the start lies on the same
-/// stretch of surface. Safe to read from any thread.
+/// with it until none is nearer. The end is the nearest triangle of all if the start lies on the same stretch
+/// of surface, near enough that no dent stops the walk. Safe to read from any thread.
 class TriangleWalk {
  public:
   /// @param mesh  must outlive the walk; every index names a vertex
