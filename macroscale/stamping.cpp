@@ -49,16 +49,16 @@ Scene stamping_scene(const StampingSpec& spec, const mesoscale::FabricProperties
   return scene;
 }
 
-// Rest under the binder force before the punch moves. Only the edges of the rings are off balance, so
-// residuals are small from the start and the tolerance must be as well. Friction is off, and nothing but
-// inertia then holds a blank that lies flat against a drift along it: steps short enough for that, velocities
-// taken out after each.
+// Rest under the binder force before the punch moves. Only the edges of the rings are off balance, so residuals
+// are small from the start and the tolerance must be as well. Friction is on: nothing else holds a blank that lies
+// flat against a drift along tools whose surfaces are triangles. Velocities are taken out after each step, and
+// what friction remembers of the closing at the end.
 StepSummary close_binder(System& system, const SolveOptions& options, State& state, StepData& step) {
   constexpr double dt = 0.02;     // [s]
   constexpr double still = 1e-6;  // largest motion of a step that counts as rest [m]
   constexpr int most_steps = 8;   // each leaves about a third of the motion of the one before
+  const auto memory = state.memory;
   SolveOptions closing = options;
-  closing.frictionless = true;
   closing.force_tolerance = 1e-6;
   closing.relative_tolerance = 1e-6;
   StepSummary summary;
@@ -74,6 +74,7 @@ StepSummary close_binder(System& system, const SolveOptions& options, State& sta
     state.time = 0.0;
     if (moved < still) break;
   }
+  state.memory = memory;
   summary.newton_iterations = iterations;
   return summary;
 }
