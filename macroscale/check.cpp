@@ -134,8 +134,8 @@ Problems check(const StampingSpec& spec) {
   if (!binder.file) edge = std::max(edge, binder.inner_radius + binder.edge_fillet);
   check_blank(f, blank, edge);
   const double half = reach_of(blank);
-  f.demand(process.stroke < half, "process.punch.stroke.reach", "process.punch.stroke", mm(process.stroke),
-           fmt::format("must be less than half the blank ({})", mm(half)),
+  f.demand(half <= 0.0 || process.stroke < half, "process.punch.stroke.reach", "process.punch.stroke",
+           mm(process.stroke), fmt::format("must be less than half the blank ({})", mm(half)),
            "A deeper stroke pulls the blank out of the binder.");
   f.demand(blank.plies == 1, "blank.plies.range", "blank.plies", fmt::format("{}", blank.plies), "must be 1",
            "Several plies come with a later version; run one.");

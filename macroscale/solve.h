@@ -14,7 +14,7 @@ struct SolveOptions {
   double force_tolerance = 1e-3;     ///< largest nodal residual accepted [N]
   double relative_tolerance = 1e-3;  ///< of the mean nodal contact force; the larger of the two holds
   double first_pass_factor = 30.0;   ///< looser tolerance while friction loads are still to be updated
-  double largest_increment = 5e-3;   ///< of any unknown in one Newton iteration [m]
+  double largest_increment = 2e-3;   ///< of any unknown in one Newton iteration [m]; tool bands reach past it
   double stagnation = 1e-9;          ///< an increment this small is progress no more [m]
   double lag_tolerance = 0.01;       ///< change of all friction force by one more update, relative
   double lag_limit = 0.05;           ///< a step whose friction still moves by more than this is rejected

@@ -49,10 +49,10 @@ Scene stamping_scene(const StampingSpec& spec, const mesoscale::FabricProperties
   return scene;
 }
 
-// Rest under the binder force before the punch moves. Only the edges of the rings are off balance, so residuals
-// are small from the start and the tolerance must be as well. Friction is on: nothing else holds a blank that lies
-// flat against a drift along tools whose surfaces are triangles. Velocities are taken out after each step, and
-// what friction remembers of the closing at the end.
+// Rest under the binder force before the punch moves. Only the edges of the rings are off balance, so
+// residuals are small from the start and the tolerance must be as well. Friction is on: nothing else holds a
+// blank that lies flat against a drift along tools whose surfaces are triangles. Velocities are taken out
+// after each step, and what friction remembers of the closing at the end.
 StepSummary close_binder(System& system, const SolveOptions& options, State& state, StepData& step) {
   constexpr double dt = 0.02;     // [s]
   constexpr double still = 1e-6;  // largest motion of a step that counts as rest [m]
@@ -156,6 +156,27 @@ void describe_iterate(StampingFailure& failure, const System& system, const Step
     else
       failure.not_finite.push_back("energy of " + name);
   }
+}
+
+// What a checkpoint says of the run, as its result.
+void take_over(StampingResult& result, const Blank& blank, StampingCheckpoint at) {
+  StampingSummary& s = result.summary;
+  s.nodes = blank.nodes();
+  s.spacing = blank.spacing;
+  s.rejected_steps = at.rejected_steps;
+  s.newton_iterations = at.newton_iterations;
+  s.falling_branch = at.falling_branch;
+  result.history = std::move(at.history);
+  result.final_state = std::move(at.blank);
+  summarise(result, blank, at.state, at.peak_force_balance);
+}
+
+// A run that was complete: no tools, no laws, no equations.
+StampingResult result_of(const StampingSpec& spec, const StampingCheckpoint& last) {
+  StampingResult result;
+  result.summary.completed = true;
+  take_over(result, make_blank(outline_of(spec.blank), spec.blank.spacing, spec.blank.orientation), last);
+  return result;
 }
 
 class Run {
@@ -331,15 +352,7 @@ class Run {
   }
 
   StampingResult finish() {
-    StampingSummary& s = result_.summary;
-    s.nodes = scene_.blank.nodes();
-    s.spacing = scene_.blank.spacing;
-    s.rejected_steps = now_.rejected_steps;
-    s.newton_iterations = now_.newton_iterations;
-    s.falling_branch = now_.falling_branch;
-    result_.history = std::move(now_.history);
-    result_.final_state = std::move(now_.blank);
-    summarise(result_, scene_.blank, now_.state, now_.peak_force_balance);
+    take_over(result_, scene_.blank, std::move(now_));
     return std::move(result_);
   }
 
@@ -381,6 +394,10 @@ StampingResult run_stamping(const StampingSpec& spec, const mesoscale::FabricPro
   const Problems of_fabric = mesoscale::check(fabric);
   problems.insert(problems.end(), of_fabric.begin(), of_fabric.end());
   if (!problems.empty()) throw InputError(std::move(problems));
+  if (control.resume_from && control.resume_from->step == spec.process.steps) {
+    if (control.keep) control.keep(*control.resume_from, true);
+    return result_of(spec, *control.resume_from);
+  }
   for (const auto* file : {&spec.punch.file, &spec.die.file, &spec.binder.file})
     if (*file && !(*file)->loaded) throw std::logic_error("run_stamping: a tool file was not loaded");
   return Run(spec, fabric, friction, control).result();

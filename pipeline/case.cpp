@@ -406,18 +406,6 @@ Problems check_between_keys(const Case& a_case, const Problems& known) {
 
 constexpr double melting_range_of_polypropylene = 433.15;  // its lower end [K]; recalled
 
-/// Reads the tools that files give and measures them against each other, the fabric and the blank.
-Problems load_tools(Case& a_case) {
-  if (!a_case.stamping) return {};
-  const double thickness = a_case.cell->weave.fabric_thickness;
-  try {
-    a_case.stamping = macroscale::with_tools_loaded(*a_case.stamping, thickness);
-  } catch (const InputError& error) {
-    return error.problems();
-  }
-  return macroscale::check_tools(*a_case.stamping, thickness);
-}
-
 /// Values no source of ours measures, said wherever the case is shown.
 void note_assumptions(Case& a_case) {
   const Setting* area = a_case.settings.find("friction.calibration.plate_area");
@@ -454,26 +442,44 @@ std::string friction_line(const FrictionSpec& friction) {
 }  // namespace
 
 Case read_case_text(const std::string& text, const std::string& file, const std::filesystem::path& folder,
-                    const std::vector<std::string>& assignments, ToolFiles tools) {
+                    const std::vector<std::string>& assignments) {
   ReadConfig config = read_config(text, file, folder, assignments);
   Case result = case_of(config, folder);
   Problems between = check_between_keys(result, config.problems);
   locate(between, config);
   append(config.problems, std::move(between));
-  if (config.problems.empty() && tools == ToolFiles::load) {
-    between = load_tools(result);
-    locate(between, config);
-    append(config.problems, std::move(between));
-  }
   sort_by_place(config.problems, file);
   if (!config.problems.empty()) throw InputError(config.problems);
   note_assumptions(result);
   return result;
 }
 
-Case read_case(const std::filesystem::path& file, const std::vector<std::string>& assignments,
-               ToolFiles tools) {
-  return read_case_text(read_text_file(file), file.string(), file.parent_path(), assignments, tools);
+Case read_case(const std::filesystem::path& file, const std::vector<std::string>& assignments) {
+  return read_case_text(read_text_file(file), file.string(), file.parent_path(), assignments);
+}
+
+void load_tools(Case& a_case) {
+  if (!a_case.stamping) return;
+  const double thickness = a_case.cell->weave.fabric_thickness;
+  Problems problems;
+  try {
+    a_case.stamping = macroscale::with_tools_loaded(*a_case.stamping, thickness);
+    problems = macroscale::check_tools(*a_case.stamping, thickness);
+  } catch (const InputError& error) {
+    problems = error.problems();
+  }
+  for (Problem& problem : problems) {
+    if (!problem.file.empty()) continue;
+    // The key itself, or the tool's file where the problem is about the tool as a whole.
+    const Setting* place = a_case.settings.find(problem.key);
+    if (place == nullptr) place = a_case.settings.find(problem.key + ".file");
+    if (place == nullptr) place = a_case.settings.find(problem.key + ".shape");
+    if (place == nullptr) continue;
+    problem.file = place->file;
+    problem.line = place->line;
+    if (problem.value.empty()) problem.value = place->written;
+  }
+  if (!problems.empty()) throw InputError(std::move(problems));
 }
 
 std::vector<std::string> stage_lines(const Case& a_case) {

@@ -49,18 +49,19 @@ struct Case {
   Settings settings;                                      ///< every key behind the above
 };
 
-/// Tool files take seconds to read and check: commands that stamp nothing leave them.
-enum class ToolFiles { load, leave };
-
-/// Reads a configuration file with --set applied, checks every key, the keys against each other and the tools
-/// that files give.
-/// @throws InputError  with every problem of the file; those of tool files once the rest is sound
-Case read_case(const std::filesystem::path& file, const std::vector<std::string>& assignments = {},
-               ToolFiles tools = ToolFiles::load);
+/// Reads a configuration file with --set applied, checks every key and the keys against each other. Tool
+/// files must be there; load_tools reads them.
+/// @throws InputError  with every problem of the file
+Case read_case(const std::filesystem::path& file, const std::vector<std::string>& assignments = {});
 
 /// The same for text. @param folder  against which file keys are resolved
 Case read_case_text(const std::string& text, const std::string& file, const std::filesystem::path& folder,
-                    const std::vector<std::string>& assignments = {}, ToolFiles tools = ToolFiles::load);
+                    const std::vector<std::string>& assignments = {});
+
+/// Reads the tools that files give, which takes seconds, and measures them against each other, the fabric and
+/// the blank.
+/// @throws InputError  with every problem
+void load_tools(Case& a_case);
 
 /// What `heddle run` would do, one line a stage.
 std::vector<std::string> stage_lines(const Case& a_case);

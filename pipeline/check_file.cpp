@@ -11,7 +11,8 @@ int check_file(const CheckOptions& options) {
     fmt::print("{}", config_reference());
     return exit_done;
   }
-  const Case checked = read_case(options.file, options.assignments);
+  Case checked = read_case(options.file, options.assignments);
+  load_tools(checked);
   fmt::print("{}: no problems\nwould run\n", options.file.string());
   for (const std::string& line : stage_lines(checked)) fmt::print("  {}\n", line);
   if (!checked.notes.empty()) fmt::print("notes\n");

@@ -259,8 +259,7 @@ void print_attention(const ReportInput& input) {
 enum class Part { all, weave, friction };
 
 Case read_part(const RunOptions& options, Part part) {
-  Case a_case =
-      read_case(options.file, options.assignments, part == Part::all ? ToolFiles::load : ToolFiles::leave);
+  Case a_case = read_case(options.file, options.assignments);
   if (part != Part::all) a_case.stamping.reset();
   if (part == Part::weave) a_case.friction.reset(), a_case.friction_test.reset();
   const bool empty = part == Part::weave ? !a_case.cell : part == Part::friction ? !a_case.friction : false;
@@ -350,12 +349,26 @@ RunEnding say_interrupted(const RunOptions& options, const RunFolder& folder, co
   return {exit_failed, true, reason};
 }
 
+// Whether the stamping need not run: then its tools need not be read either.
+bool stamped_before(const RunOptions& options, const Case& a_case, const Resumption& resumption) {
+  if (resumption.record && resumption.record->complete()) return true;
+  const Cache cache(options.cache,
+                    [](const std::string&) {});  // what is wrong with it is said when it is used
+  const auto record = cache.find(inputs_of(ChainStage::macroscale, a_case).key(), read_stamping_record);
+  return record && record->complete();
+}
+
 RunEnding run_part(const RunOptions& options, Part part) {
-  const Case a_case = read_part(options, part);
+  Case a_case = read_part(options, part);
   const auto threads = limit_threads(options.threads);
-  if (part == Part::all && a_case.orientation_study) return {run_orientation_study(options, a_case), false, ""};
+  if (part == Part::all && a_case.orientation_study) {
+    load_tools(a_case);
+    return {run_orientation_study(options, a_case), false, ""};
+  }
   const fs::path path = output_folder(options, a_case.name);
   Resumption resumption = look_for_resumption(options, a_case, path);
+  // Before the folder is touched: a tool that cannot be used must not cost what an earlier run left.
+  if (a_case.stamping && !stamped_before(options, a_case, resumption)) load_tools(a_case);
   RunFolder folder(a_case, path, options.force, resumption.entry);
   const Cache cache(options.cache, [&](const std::string& line) { folder.log(line); });
   const InterruptGuard guard;

@@ -212,7 +212,7 @@ std::vector<Key> process_keys() {
   };
 }
 
-std::vector<Key> blank_and_tool_keys() {
+std::vector<Key> blank_keys() {
   const auto stamping = Stage::stamping;
   return {
       {.path = "blank.shape", .type = KeyType::choice, .presence = defaulted, .default_text = "rectangle",
@@ -237,27 +237,6 @@ std::vector<Key> blank_and_tool_keys() {
        .help = "Upper bound of the node spacing; the size is divided into whole cells."},
       {.path = "blank.plies", .type = KeyType::integer, .presence = defaulted, .default_text = "1", .range = "[1, 1]",
        .stage = stamping, .help = "This version forms one ply."},
-      {.path = "tools.punch.shape", .type = KeyType::choice, .presence = required, .choices = {"hemisphere"}, .stage = stamping,
-       .used_when = "!tools.punch.file", .help = "Hemisphere with its apex down and a cylinder above."},
-      {.path = "tools.punch.radius", .type = KeyType::quantity, .unit = "mm", .presence = required,
-       .range = "(0 mm, 10000 mm)", .stage = stamping, .used_when = "!tools.punch.file", .help = "Of hemisphere and cylinder."},
-      {.path = "tools.die.shape", .type = KeyType::choice, .presence = required, .choices = {"ring"}, .stage = stamping,
-       .used_when = "!tools.die.file", .help = "Plate with a round opening and a filleted edge."},
-      {.path = "tools.die.opening_radius", .type = KeyType::quantity, .unit = "mm", .presence = required,
-       .range = "(0 mm, 10000 mm)", .stage = stamping, .used_when = "!tools.die.file",
-       .help = "Radius of the opening below the fillet."},
-      {.path = "tools.die.fillet", .type = KeyType::quantity, .unit = "mm", .presence = required,
-       .range = "(0 mm, 10000 mm)", .stage = stamping, .used_when = "!tools.die.file", .help = "Radius of the rounded edge."},
-      {.path = "tools.binder.shape", .type = KeyType::choice, .presence = required, .choices = {"ring"}, .stage = stamping,
-       .used_when = "!tools.binder.file", .help = "Flat ring under force, free to move up and down."},
-      {.path = "tools.binder.inner_radius", .type = KeyType::quantity, .unit = "mm", .presence = required,
-       .range = "(0 mm, 10000 mm)", .stage = stamping, .used_when = "!tools.binder.file", .help = "Where the binder begins."},
-      {.path = "tools.binder.edge_fillet", .type = KeyType::quantity, .unit = "mm", .presence = defaulted,
-       .default_text = "2 mm", .range = "(0 mm, 1000 mm)", .stage = stamping,
-       .used_when = "!tools.binder.file",
-       .help = "Rounding of the inner edge; keeps contact smooth where fabric leaves it."},
-      {.path = "tools.binder.mass", .type = KeyType::quantity, .unit = "kg", .presence = required,
-       .range = "(0 kg, )", .stage = stamping, .help = "Of the moving binder."},
   };
 }
 
@@ -281,6 +260,41 @@ std::vector<Key> tool_file_keys(const std::string& tool) {
        .choices = {"on", "off"}, .stage = stamping, .used_when = with_file,
        .help = "on: merge equal vertices, drop triangles without area, turn those that face the wrong way."},
   };
+}
+
+std::vector<Key> tool_keys() {
+  const auto stamping = Stage::stamping;
+  std::vector<Key> keys{
+      {.path = "tools.punch.shape", .type = KeyType::choice, .presence = required, .choices = {"hemisphere"}, .stage = stamping,
+       .used_when = "!tools.punch.file", .help = "Hemisphere with its apex down and a cylinder above."},
+      {.path = "tools.punch.radius", .type = KeyType::quantity, .unit = "mm", .presence = required,
+       .range = "(0 mm, 10000 mm)", .stage = stamping, .used_when = "!tools.punch.file", .help = "Of hemisphere and cylinder."},
+  };
+  append(keys, tool_file_keys("punch"));
+  append(keys, {
+      {.path = "tools.die.shape", .type = KeyType::choice, .presence = required, .choices = {"ring"}, .stage = stamping,
+       .used_when = "!tools.die.file", .help = "Plate with a round opening and a filleted edge."},
+      {.path = "tools.die.opening_radius", .type = KeyType::quantity, .unit = "mm", .presence = required,
+       .range = "(0 mm, 10000 mm)", .stage = stamping, .used_when = "!tools.die.file",
+       .help = "Radius of the opening below the fillet."},
+      {.path = "tools.die.fillet", .type = KeyType::quantity, .unit = "mm", .presence = required,
+       .range = "(0 mm, 10000 mm)", .stage = stamping, .used_when = "!tools.die.file", .help = "Radius of the rounded edge."},
+  });
+  append(keys, tool_file_keys("die"));
+  append(keys, {
+      {.path = "tools.binder.shape", .type = KeyType::choice, .presence = required, .choices = {"ring"}, .stage = stamping,
+       .used_when = "!tools.binder.file", .help = "Flat ring under force, free to move up and down."},
+      {.path = "tools.binder.inner_radius", .type = KeyType::quantity, .unit = "mm", .presence = required,
+       .range = "(0 mm, 10000 mm)", .stage = stamping, .used_when = "!tools.binder.file", .help = "Where the binder begins."},
+      {.path = "tools.binder.edge_fillet", .type = KeyType::quantity, .unit = "mm", .presence = defaulted,
+       .default_text = "2 mm", .range = "(0 mm, 1000 mm)", .stage = stamping,
+       .used_when = "!tools.binder.file",
+       .help = "Rounding of the inner edge; keeps contact smooth where fabric leaves it."},
+      {.path = "tools.binder.mass", .type = KeyType::quantity, .unit = "kg", .presence = required,
+       .range = "(0 kg, )", .stage = stamping, .help = "Of the moving binder."},
+  });
+  append(keys, tool_file_keys("binder"));
+  return keys;
 }
 
 std::vector<Key> effect_keys() {
@@ -341,8 +355,8 @@ std::vector<Key> all_keys() {
   append(keys, friction_keys());
   append(keys, calibration_weave_keys());
   append(keys, process_keys());
-  append(keys, blank_and_tool_keys());
-  for (const char* tool : {"punch", "die", "binder"}) append(keys, tool_file_keys(tool));
+  append(keys, blank_keys());
+  append(keys, tool_keys());
   append(keys, effect_keys());
   append(keys, artefact_keys());
   append(keys, study_keys());

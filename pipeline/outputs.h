@@ -28,7 +28,8 @@ class OutputError : public std::runtime_error {
 
 /// Writes under a temporary name beside `path`, then renames: `path` holds the old bytes or all the new ones,
 /// even if the run is interrupted. Creates the folder if it is missing.
-/// @param durable  the bytes are on the disk before the name is: a power cut leaves the old file or the new one
+/// @param durable  the bytes are on the disk before the name is: a power cut leaves the old file or the new
+/// one
 /// @throws OutputError  naming the path and the reason; the temporary file is removed
 void write_file(const std::filesystem::path& path, std::string_view bytes, bool durable = false);
 /// @throws OutputError  naming the path and the reason

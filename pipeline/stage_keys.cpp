@@ -68,7 +68,9 @@ std::string name_of(ChainStage stage) {
 }
 
 const std::vector<std::string>& keys_without_effect() {
-  static const std::vector<std::string> keys{"heddle", "name"};
+  // A study lists runs; each has its own blank.orientation in its key.
+  static const std::vector<std::string> keys{"heddle", "name", "orientation_study.blanks",
+                                             "orientation_study.friction"};
   return keys;
 }
 

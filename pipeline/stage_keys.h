@@ -39,7 +39,7 @@ StageInputs inputs_of(ChainStage stage, const Case& a_case);
 /// Whether a stage itself (not one before it) reads a key of the configuration.
 bool reads(ChainStage stage, const Key& key);
 
-/// Keys that change no result: the version of the file format and the name of the case.
+/// Keys that change no result of a stage: version of the file format, name of the case, lists of runs.
 const std::vector<std::string>& keys_without_effect();
 
 /// What differs between two texts of inputs, a line each: "process.binder_force was 650 N, is 700 N". For

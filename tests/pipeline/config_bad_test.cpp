@@ -26,6 +26,7 @@ const std::vector<BadFile> bad_files{
     {"alias", {{"resin.power_index.anchor", 4}, {"forming.bonding.alias", 5}}},
     {"anchor", {{"name.anchor", 2}}},
     {"blank_outside_the_die", {{"blank.size.reach", 7}}},
+    {"blank_crosses_itself", {{"blank.points.simple", 7}}},
     {"block_is_a_value", {{"resin.map", 4}}},
     {"celsius_difference", {{"effects.tool_temperature_shift.slope.unit", 5}}},
     {"choice", {{"fabric.shear_rate.choice", 4}}},
@@ -36,7 +37,6 @@ const std::vector<BadFile> bad_files{
     {"fitted_to_nothing", {{"effects.tool_temperature_shift.slope.fitted", 5}}},
     {"key_of_another_block", {{"cell.fibre_density.unknown", 4}}},
     {"later_effect", {{"effects.static_peak.later", 5}}},
-    {"later_tool_file", {{"tools.punch.file.later", 6}}},
     {"leading_zero", {{"forming.compaction_exponent.unit", 8}}},
     {"many_at_once",
      {{"weave.tow_width.unit", 3},
@@ -74,6 +74,10 @@ const std::vector<BadFile> bad_files{
     {"table_with_semicolons", {{"csv.separator", 1}}},
     {"table_with_nan", {{"friction.table.number", 3}}},
     {"tag", {{"resin.power_index.tag", 4}}},
+    {"tool_file_garbage", {{"tools.punch.file.format", 1}}},
+    {"tool_file_missing", {{"tools.punch.file.file", 6}, {"tools.punch.length_unit.required", 6}}},
+    {"tool_passage", {{"tools.die.passage", 6}, {"tools.binder.passage", 6}}},
+    {"tool_unit", {{"tools.punch.length_unit.size", 6}}},
     {"tow_without_room_for_its_material", {{"weave.tow_thickness.holds_material", 3}}},
     {"two_documents", {{"yaml.documents", 0}}},
     {"unit_on_a_number", {{"resin.power_index.unit", 4}}},
@@ -95,7 +99,8 @@ std::string listed(std::vector<Place> problems) {
 std::string problems_of(const std::filesystem::path& file) {
   std::vector<Place> found;
   try {
-    pipeline::read_case(file);
+    pipeline::Case a_case = pipeline::read_case(file);
+    pipeline::load_tools(a_case);
   } catch (const InputError& error) {
     for (const Problem& problem : error.problems()) {
       CHECK_FALSE(problem.rule.empty());

@@ -13,6 +13,7 @@
 #include "core/problem.h"
 #include "pipeline/commands.h"
 #include "pipeline/outputs.h"
+#include "tool_settings.h"
 
 using namespace heddle;
 namespace fs = std::filesystem;
@@ -36,7 +37,8 @@ class Scratch {
 };
 
 const std::vector<std::string> small = {"blank.spacing=20 mm", "process.steps=12",
-                                        "process.punch={stroke: 30 mm, time: 0.18 s, slow_down: 0.01 s}"};
+                                        "process.punch={stroke: 30 mm, time: 0.18 s, slow_down: 0.01 s}",
+                                        heddle::test::tools_by_shape};
 
 pipeline::RunOptions options_for(const std::string& config, const fs::path& output,
                                  std::vector<std::string> settings) {
@@ -201,7 +203,8 @@ TEST_CASE(
     "is",
     "[pipeline][run][slow]") {
   const Scratch scratch;
-  const std::vector<std::string> coulomb = {"friction={law: coulomb, coefficient: 0.3}"};
+  const std::vector<std::string> coulomb = {"friction={law: coulomb, coefficient: 0.3}",
+                                            heddle::test::tools_by_shape};
   const auto peak = [&](const std::string& name, const std::string& rate, const std::string& speed,
                         const std::string& mass) {
     return stamped(
@@ -240,4 +243,27 @@ TEST_CASE("the orientation study stamps each blank, pulls each sample and report
   CHECK(number(study / "cases/0_deg", "draw_in_max_mm") >
         1.2 * number(study / "cases/45_deg", "draw_in_max_mm"));
   CHECK_THAT(pipeline::read_file(study / "report.html"), Catch::Contains("at every angle by construction"));
+}
+
+TEST_CASE("tools from the shipped STEP files stamp the same part as the shapes they were drawn from",
+          "[pipeline][run][tools]") {
+  const Scratch scratch;
+  std::vector<std::string> settings = small;
+  const double shapes = stamped(scratch, "shapes", settings, "peak_punch_force_N");
+  const double shear = number(scratch / "shapes", "shear_angle_max_deg");
+  settings.back() = heddle::test::tools_by_file;
+  CHECK(stamped(scratch, "files", settings, "peak_punch_force_N") == Approx(shapes).epsilon(0.02));
+  CHECK(number(scratch / "files", "shear_angle_max_deg") == Approx(shear).margin(0.5));
+  CHECK(fs::exists(scratch / "files/inputs/tools.punch.file.step"));
+}
+
+TEST_CASE(
+    "at full size STEP tools give the force of the shapes within 0.3 % and the shear within 0.1 degrees",
+    "[pipeline][run][tools][slow]") {
+  const Scratch scratch;
+  const double files = stamped(scratch, "files", {}, "peak_punch_force_N");
+  const double shapes = stamped(scratch, "shapes", {heddle::test::tools_by_shape}, "peak_punch_force_N");
+  CHECK(files == Approx(shapes).epsilon(0.003));
+  CHECK(number(scratch / "files", "shear_angle_max_deg") ==
+        Approx(number(scratch / "shapes", "shear_angle_max_deg")).margin(0.1));
 }

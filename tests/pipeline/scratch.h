@@ -10,6 +10,7 @@
 #include "pipeline/commands.h"
 #include "pipeline/outputs.h"
 #include "pipeline/stage_keys.h"
+#include "tool_settings.h"
 
 /// What tests of whole runs share.
 namespace heddle::test {
@@ -37,7 +38,8 @@ class Scratch {
 /// The shipped stamping, small: 13 x 13 nodes, 6 steps, constant mu, so that its friction stage has nothing
 /// to fit.
 inline std::vector<std::string> small_stamping() {
-  return {"blank.spacing=32 mm", "process.steps=5", "process.punch={stroke: 20 mm, time: 0.12 s}"};
+  return {"blank.spacing=32 mm", "process.steps=5", "process.punch={stroke: 20 mm, time: 0.12 s}",
+          tools_by_shape};
 }
 
 inline std::vector<std::string> with(std::vector<std::string> base, const std::string& more) {
