@@ -278,12 +278,13 @@ StampingCheckpoint read_checkpoint(const Hdf5Reader& file, const std::string& gr
   return checkpoint;
 }
 
-std::string fault_of(const StampingCheckpoint& c, const Scene& scene, int steps) {
-  const std::size_t nodes = static_cast<std::size_t>(scene.blank.nodes()), tools = scene.tools.size();
-  const bool fits = c.state.x.size() == scene.unknowns() && c.state.v.size() == scene.unknowns() &&
+std::string fault_of(const StampingCheckpoint& c, const Blank& blank, int steps) {
+  constexpr std::size_t tools = 3, loaded = 1;  // punch, die and binder; the binder is loaded
+  const std::size_t nodes = static_cast<std::size_t>(blank.nodes());
+  const auto unknowns = static_cast<Eigen::Index>(3 * nodes + loaded);
+  const bool fits = c.state.x.size() == unknowns && c.state.v.size() == unknowns &&
                     c.state.tool_z.size() == tools &&
-                    c.state.corner_angle.size() == 4 * scene.blank.quads.size() &&
-                    c.state.memory.size() == tools &&
+                    c.state.corner_angle.size() == 4 * blank.quads.size() && c.state.memory.size() == tools &&
                     std::all_of(c.state.memory.begin(), c.state.memory.end(),
                                 [&](const auto& m) { return m.size() == nodes; });
   if (!fits) return "its state is of another blank or other tools";

@@ -33,7 +33,7 @@ void write_instant(Hdf5Writer& file, const std::string& group, const BlankState&
 /// @param shared  any instant of the same blank
 BlankState read_instant(const Hdf5Reader& file, const std::string& group, const BlankState& shared);
 
-/// Fault that keeps a checkpoint from being of this scene, or "".
-std::string fault_of(const StampingCheckpoint& checkpoint, const Scene& scene, int steps);
+/// Fault that keeps a checkpoint from being of a stamping of this blank in so many steps, or "".
+std::string fault_of(const StampingCheckpoint& checkpoint, const Blank& blank, int steps);
 
 }  // namespace heddle::macroscale

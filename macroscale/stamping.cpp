@@ -49,32 +49,33 @@ Scene stamping_scene(const StampingSpec& spec, const mesoscale::FabricProperties
   return scene;
 }
 
-// Rest under the binder force before the punch moves. Only the edges of the rings are off balance, so
-// residuals are small from the start and the tolerance must be as well. Friction is on: nothing else holds a
-// blank that lies flat against a drift along tools whose surfaces are triangles. Velocities are taken out
-// after each step, and what friction remembers of the closing at the end.
-StepSummary close_binder(System& system, const SolveOptions& options, State& state, StepData& step) {
-  constexpr double dt = 0.02;     // [s]
-  constexpr double still = 1e-6;  // largest motion of a step that counts as rest [m]
-  constexpr int most_steps = 8;   // each leaves about a third of the motion of the one before
-  const auto memory = state.memory;
+// Rest under the binder force before the punch moves: the fabric is pressed through its thickness and stays
+// where it was laid, held in its plane as the friction to come would hold it. (Free, it would drift along tools
+// whose surfaces are triangles; held by friction, the start of a run would move with the lag of the friction.)
+// Only the edges of the rings are off balance, so residuals are small from the start and the tolerance must be
+// as well. Velocities are taken out after each step.
+StepSummary close_binder(Scene& scene, System& system, const SolveOptions& options, State& state,
+                         StepData& step) {
+  constexpr double dt = 0.02;  // [s]
+  constexpr int steps = 4;     // each leaves about a third of the motion of the one before
   SolveOptions closing = options;
+  closing.frictionless = true;
   closing.force_tolerance = 1e-6;
   closing.relative_tolerance = 1e-6;
+  scene.held.assign(3 * scene.blank.nodes(), 0);
+  for (int i = 0; i < scene.blank.nodes(); ++i) scene.held[3 * i] = scene.held[3 * i + 1] = 1;
   StepSummary summary;
   int iterations = 0;
-  for (int k = 0; k < most_steps; ++k) {
+  for (int k = 0; k < steps; ++k) {
     State end;
     summary = advance(system, state, dt, state.tool_z, {}, closing, end, step);
     iterations += summary.newton_iterations;
     if (!summary.converged) break;
-    const double moved = (end.x - state.x).cwiseAbs().maxCoeff();
     state = std::move(end);
     state.v.setZero();
     state.time = 0.0;
-    if (moved < still) break;
   }
-  state.memory = memory;
+  scene.held.clear();
   summary.newton_iterations = iterations;
   return summary;
 }
@@ -171,11 +172,17 @@ void take_over(StampingResult& result, const Blank& blank, StampingCheckpoint at
   summarise(result, blank, at.state, at.peak_force_balance);
 }
 
+void refuse(const std::string& fault) {
+  if (!fault.empty()) throw std::invalid_argument("the checkpoint is not of this run: " + fault);
+}
+
 // A run that was complete: no tools, no laws, no equations.
 StampingResult result_of(const StampingSpec& spec, const StampingCheckpoint& last) {
+  const Blank blank = make_blank(outline_of(spec.blank), spec.blank.spacing, spec.blank.orientation);
+  refuse(fault_of(last, blank, spec.process.steps));
   StampingResult result;
   result.summary.completed = true;
-  take_over(result, make_blank(outline_of(spec.blank), spec.blank.spacing, spec.blank.orientation), last);
+  take_over(result, blank, last);
   return result;
 }
 
@@ -220,7 +227,7 @@ class Run {
   }
 
   Ending begin() {
-    const StepSummary closed = close_binder(system_, options_, now_.state, attempt_);
+    const StepSummary closed = close_binder(scene_, system_, options_, now_.state, attempt_);
     if (closed.stopped) return Ending::stopped;
     if (!closed.converged) {
       reason_ = "closing the binder: " + closed.reason;
@@ -233,8 +240,7 @@ class Run {
   }
 
   Ending resume(const StampingCheckpoint& checkpoint) {
-    if (const std::string fault = fault_of(checkpoint, scene_, spec_.process.steps); !fault.empty())
-      throw std::invalid_argument("the checkpoint is not of this run: " + fault);
+    refuse(fault_of(checkpoint, scene_.blank, spec_.process.steps));
     now_ = checkpoint;
     whole_ = now_;
     return Ending::done;

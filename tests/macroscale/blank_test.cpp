@@ -295,7 +295,7 @@ TEST_CASE("blanks that the tools cannot hold are refused by shape, holes that le
   spec.blank.radius = 0.09;
   CHECK(ids(spec) == std::vector<std::string>{"blank.radius.reach"});
   spec.blank.shape = BlankShape::polygon;
-  CHECK(ids(spec) == std::vector<std::string>{"blank.points.area", "process.punch.stroke.reach"});
+  CHECK(ids(spec) == std::vector<std::string>{"blank.points.area"});
   // Large, but one side cuts across the die's opening.
   spec.blank.polygon = {{{-0.3, -0.08}, {0.3, -0.08}, {0.3, 0.3}, {-0.3, 0.3}}, {}};
   CHECK(ids(spec) == std::vector<std::string>{"blank.points.reach"});

@@ -194,7 +194,7 @@ TEST_CASE("SIGTERM and SIGINT leave a checkpoint and say how to go on", "[pipeli
              Catch::Contains("starts from the beginning") && Catch::Contains("--resume would have gone on"));
 }
 
-TEST_CASE("--resume on a complete run changes nothing, and without a checkpoint it starts from the beginning",
+TEST_CASE("a complete run that is resumed changes nothing, and without a checkpoint it starts from the beginning",
           "[pipeline][resume]") {
   const Scratch scratch;
   auto options = warm_options(scratch, small_stamping());
@@ -213,7 +213,7 @@ TEST_CASE("--resume on a complete run changes nothing, and without a checkpoint 
   CHECK(first_difference(before, contents(scratch / "run")) == "");
 }
 
-TEST_CASE("--resume with other inputs is refused and names what changed; a damaged checkpoint is refused",
+TEST_CASE("going on with other inputs is refused and names what changed, and a damaged checkpoint too",
           "[pipeline][resume][wrong input]") {
   const Scratch scratch;
   const auto settings = with(small_stamping(), "process.steps=2");
