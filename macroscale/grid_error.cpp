@@ -10,11 +10,11 @@
 namespace heddle::macroscale {
 
 StampingSpec coarse_companion(const StampingSpec& spec) {
-  const Blank blank = make_blank(spec.blank.size, spec.blank.spacing, spec.blank.orientation);
+  const Blank blank = make_blank(outline_of(spec.blank), spec.blank.spacing, spec.blank.orientation);
   StampingSpec coarse = spec;
   // One spacing serves both directions; the larger of the two halves neither less than asked for.
-  const auto halved = [](double size, int cells) { return size / ((cells + 1) / 2); };
-  coarse.blank.spacing = std::max(halved(spec.blank.size[0], blank.nu), halved(spec.blank.size[1], blank.nv));
+  const auto halved = [](double spacing, int cells) { return spacing * cells / ((cells + 1) / 2); };
+  coarse.blank.spacing = std::max(halved(blank.spacing[0], blank.nu), halved(blank.spacing[1], blank.nv));
   return coarse;
 }
 
@@ -55,7 +55,8 @@ GridError compare_grids(const StampingResult& run, const StampingResult& compani
 }
 
 GridError grid_error(const StampingSpec& spec, const mesoscale::FabricProperties& fabric,
-                     const friction::Model& friction, const StampingResult& run) {
+                     const friction::Model& friction, const StampingResult& run,
+                     const StampingControl& control) {
   const StampingSpec coarse = coarse_companion(spec);
   if (const Problems problems = check(coarse); !problems.empty()) {
     GridError error;
@@ -63,7 +64,7 @@ GridError grid_error(const StampingSpec& spec, const mesoscale::FabricProperties
                                problems.front().value, problems.front().rule);
     return error;
   }
-  return compare_grids(run, run_stamping(coarse, fabric, friction));
+  return compare_grids(run, run_stamping(coarse, fabric, friction, control));
 }
 
 }  // namespace heddle::macroscale

@@ -33,8 +33,9 @@ GridError compare_grids(const StampingResult& run, const StampingResult& compani
 
 /// Runs the companion of a case that was run, and compares. Costs about a sixth of the run.
 /// Where the companion's grid would be too coarse to be run, the error is not known, and `reason` names the
-/// rule.
+/// rule; nor is it where `control` stopped the companion.
 GridError grid_error(const StampingSpec& spec, const mesoscale::FabricProperties& fabric,
-                     const friction::Model& friction, const StampingResult& run);
+                     const friction::Model& friction, const StampingResult& run,
+                     const StampingControl& control = {});
 
 }  // namespace heddle::macroscale

@@ -343,4 +343,15 @@ LevelSetCheck level_set_check(const UnitCell& cell, double voxel) {
   return check;
 }
 
+TowBodies tow_bodies(const UnitCell& cell) {
+  const LevelSetCheck check = level_set_check(cell, 2.0 * half_height(cell.section, 0.0) / 7.5);
+  TowBodies bodies{check.voxel, 0.0, check.overlap_share, check.largest_depth};
+  const double one_crossing = check.closed_form_volume / cell.weave.wefts;
+  for (std::size_t k = 0; k < check.tows.size(); ++k) {
+    const double closed_form = one_crossing * crossings(cell, check.tows[k]);
+    bodies.volume_error = std::max(bodies.volume_error, std::abs(check.tow_volume[k] / closed_form - 1.0));
+  }
+  return bodies;
+}
+
 }  // namespace heddle::mesoscale

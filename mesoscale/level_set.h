@@ -47,4 +47,14 @@ struct LevelSetCheck {
 };
 LevelSetCheck level_set_check(const UnitCell& cell, double voxel);
 
+/// The check in four numbers, as every run states it.
+struct TowBodies {
+  double voxel = 0.0;          ///< [m]
+  double volume_error = 0.0;   ///< largest over the tows, of section area times length [-]
+  double overlap_share = 0.0;  ///< of the tow volume, in voxels inside a warp and a weft [-]
+  double overlap_depth = 0.0;  ///< how deep a voxel lies in both; < 0: how far they stay apart [m]
+};
+/// With voxels of 2/15 of the tow thickness.
+TowBodies tow_bodies(const UnitCell& cell);
+
 }  // namespace heddle::mesoscale

@@ -8,6 +8,7 @@
 #include "core/text_file.h"
 #include "core/units.h"
 #include "friction/calibrate.h"
+#include "macroscale/outline_file.h"
 #include "macroscale/tool_loading.h"
 #include "macroscale/tool_set.h"
 #include "pipeline/outputs.h"
@@ -203,9 +204,10 @@ std::optional<macroscale::ToolFileSpec> tool_file_of(const Settings& settings, c
 
 macroscale::StampingSpec stamping_of(const Settings& settings, const std::filesystem::path& folder) {
   macroscale::StampingSpec stamping;
-  stamping.blank.shape = settings.is("blank.shape", "circle")    ? macroscale::BlankShape::circle
-                         : settings.is("blank.shape", "polygon") ? macroscale::BlankShape::polygon
-                                                                 : macroscale::BlankShape::rectangle;
+  const bool drawn = settings.is("blank.shape", "polygon") || settings.is("blank.shape", "drawing");
+  stamping.blank.shape = settings.is("blank.shape", "circle") ? macroscale::BlankShape::circle
+                         : drawn                              ? macroscale::BlankShape::polygon
+                                                              : macroscale::BlankShape::rectangle;
   take(settings, "blank.size", stamping.blank.size);
   take(settings, "blank.radius", stamping.blank.radius);
   for (const auto& point : rows<2>(settings, "blank.points")) stamping.blank.polygon.outer.push_back(point);
@@ -240,6 +242,7 @@ Case case_of(const ReadConfig& config, const std::filesystem::path& folder) {
   if (runs(Stage::friction)) result.friction = friction_of(settings, folder);
   if (runs(Stage::friction_test)) result.friction_test = friction_test_of(settings, folder);
   if (runs(Stage::stamping)) result.stamping = stamping_of(settings, folder);
+  result.grid_error = runs(Stage::grid_error) && settings.is("blank.grid_error", "on");
   if (runs(Stage::orientation_study)) {
     result.orientation_study.emplace();
     if (settings.has("orientation_study.blanks"))
@@ -379,6 +382,23 @@ Problems check_distinct(const std::vector<double>& angles, const std::string& ke
   return {{key + ".distinct", key, "", "must not hold an angle twice", "Leave the second one out."}};
 }
 
+/// The polygon of a blank that is given as a drawing.
+Problems read_drawing(Case& a_case, const std::filesystem::path& folder) {
+  const Settings& settings = a_case.settings;
+  const std::string block = "blank.drawing";
+  if (!a_case.stamping || !settings.has(block + ".file") || !settings.has(block + ".length_unit")) return {};
+  macroscale::OutlineFile drawing;
+  drawing.file = folder / settings.text(block + ".file");
+  drawing.length_unit = read_quantity("1 " + settings.text(block + ".length_unit"), "mm").value;
+  take(settings, block + ".chord_error", drawing.chord_error);
+  try {
+    a_case.stamping->blank.polygon = macroscale::read_outline(drawing, block);
+  } catch (const InputError& error) {
+    return error.problems();
+  }
+  return {};
+}
+
 Problems check_between_keys(const Case& a_case, const Problems& known) {
   const std::vector<std::string> cell_blocks{"weave", "cell", "fabric", "resin", "forming"};
   const std::vector<std::string> friction_blocks{"friction", "effects", "resin"};
@@ -393,7 +413,13 @@ Problems check_between_keys(const Case& a_case, const Problems& known) {
   if (a_case.friction_test && a_case.friction_test->data != a_case.friction->calibration_data) {
     append(problems, check_table(a_case.friction_test->data, false));
   }
-  if (a_case.stamping && stamping_read) append(problems, macroscale::check(*a_case.stamping));
+  if (a_case.stamping && stamping_read) {
+    Problems of_stamping = macroscale::check(*a_case.stamping);
+    if (a_case.settings.is("blank.shape", "drawing"))  // its corners are those of the drawing
+      for (Problem& problem : of_stamping)
+        if (problem.key == "blank.points") problem.key = "blank.drawing.file";
+    append(problems, std::move(of_stamping));
+  }
   if (a_case.orientation_study) {
     append(problems, check_distinct(a_case.orientation_study->blanks, "orientation_study.blanks"));
     append(problems, check_distinct(a_case.orientation_study->friction, "orientation_study.friction"));
@@ -445,7 +471,10 @@ Case read_case_text(const std::string& text, const std::string& file, const std:
                     const std::vector<std::string>& assignments) {
   ReadConfig config = read_config(text, file, folder, assignments);
   Case result = case_of(config, folder);
-  Problems between = check_between_keys(result, config.problems);
+  Problems between = read_drawing(result, folder);
+  locate(between, config);
+  append(config.problems, std::move(between));
+  between = check_between_keys(result, config.problems);
   locate(between, config);
   append(config.problems, std::move(between));
   sort_by_place(config.problems, file);
@@ -495,6 +524,7 @@ std::vector<std::string> stage_lines(const Case& a_case) {
     lines.push_back(fmt::format("macroscale: stroke {} in {}, {} steps", write_quantity(process.stroke, "mm"),
                                 write_quantity(process.time / process.speed_scale, "s"), process.steps));
   }
+  if (a_case.grid_error) lines.push_back("grid error: the same stamping on twice the node spacing");
   if (a_case.orientation_study)
     lines.push_back(fmt::format("orientation study: {} blanks, {} friction samples",
                                 a_case.orientation_study->blanks.size(),

@@ -44,6 +44,7 @@ struct Case {
   std::optional<FrictionSpec> friction;
   std::optional<FrictionTestSpec> friction_test;
   std::optional<macroscale::StampingSpec> stamping;
+  bool grid_error = false;                                ///< the stamping is run once more on a coarser grid
   std::optional<OrientationStudySpec> orientation_study;  ///< runs the stamping once an angle
   std::vector<std::string> notes;                         ///< keys not used, and values that are assumed
   Settings settings;                                      ///< every key behind the above

@@ -11,6 +11,7 @@
 #include "pipeline/cache.h"
 #include "pipeline/case.h"
 #include "pipeline/export_vtu.h"
+#include "pipeline/grid_error_stage.h"
 #include "pipeline/interrupt.h"
 #include "pipeline/orientation.h"
 #include "pipeline/report.h"
@@ -34,6 +35,7 @@ struct Findings {
   std::optional<WeavePictures> pictures;
   std::optional<FrictionStage> friction;
   std::optional<macroscale::StampingResult> stamping;
+  std::optional<macroscale::GridError> grid_error;
 };
 
 std::unique_ptr<tbb::global_control> limit_threads(int threads) {
@@ -100,14 +102,24 @@ void run_stamping(const Case& a_case, RunFolder& folder, const Cache& cache, Fin
                                          folder, cache, std::move(options));
 }
 
+// The companion run on the coarser grid, of a stamping that came to its end.
+void run_grid_error(const Case& a_case, const RunOptions& options, RunFolder& folder, const Cache& cache,
+                    Findings& findings) {
+  if (!a_case.grid_error || !findings.stamping || !findings.stamping->summary.completed) return;
+  findings.grid_error = run_grid_error_stage(
+      *a_case.stamping, findings.cell->fabric, findings.friction->model, *findings.stamping, folder, cache,
+      inputs_of(ChainStage::grid_error, a_case).key(), InterruptGuard::interrupted, options.quiet);
+}
+
 std::string description_of(const Case& a_case) {
   if (!a_case.stamping) return a_case.cell ? "One unit cell of the weave." : "The friction test.";
   const auto& s = *a_case.stamping;
-  return fmt::format(
-      "A {} blank of {} weave stamped {:.0f} mm deep into a hemisphere of {:.0f} mm radius "
-      "in {:.2f} s.",
-      blank_in_words(s.blank), a_case.cell->weave.pattern, 1e3 * s.process.stroke, 1e3 * s.punch.radius,
-      s.process.time / s.process.speed_scale);
+  const std::string punch = s.punch.file
+                                ? "by the punch of " + s.punch.file->source.file.filename().string()
+                                : fmt::format("into a hemisphere of {:.0f} mm radius", 1e3 * s.punch.radius);
+  return fmt::format("A {} blank of {} weave stamped {:.0f} mm deep {} in {:.2f} s.", blank_in_words(s.blank),
+                     a_case.cell->weave.pattern, 1e3 * s.process.stroke, punch,
+                     s.process.time / s.process.speed_scale);
 }
 
 std::vector<Condition> conditions_of(const Case& a_case) {
@@ -160,6 +172,7 @@ ReportInput report_input(const Case& a_case, const Findings& findings) {
     input.stamping = findings.stamping->summary;
     input.history = findings.stamping->history;
     input.blank = findings.stamping->final_state;
+    input.grid_error = findings.grid_error;
     input.artefact = a_case.stamping->artefact;
   }
   input.notes.insert(input.notes.end(), a_case.notes.begin(), a_case.notes.end());
@@ -184,17 +197,20 @@ std::vector<std::pair<std::string, std::string>> stage_hashes(const Case& a_case
   if (a_case.cell) add(ChainStage::mesoscale);
   if (a_case.friction) add(ChainStage::friction);
   if (a_case.stamping) add(ChainStage::macroscale);
+  if (a_case.grid_error) add(ChainStage::grid_error);
   return hashes;
 }
 
 void write_findings(const Case& a_case, RunFolder& folder, const Findings& findings) {
   SummaryRecord record;
   if (findings.cell) record.cell = findings.cell->summary;
+  if (findings.pictures) record.tow_bodies = findings.pictures->bodies;
   if (findings.cell && a_case.stamping)
     record.contact_area_fraction_binder =
         findings.cell->fabric.contact.evaluate(mean_binder_pressure(*a_case.stamping), 0.0).fraction;
   if (findings.stamping) {
     record.stamping = findings.stamping->summary;
+    record.grid_error = findings.grid_error;
     record.failure = findings.stamping->failure;
     if (record.failure) record.advice = advice_for(*record.stamping, a_case.stamping->process.steps);
   }
@@ -203,7 +219,7 @@ void write_findings(const Case& a_case, RunFolder& folder, const Findings& findi
   folder.close(a_case, stage_hashes(a_case));
 }
 
-void print_cell(const mesoscale::CellSummary& s) {
+void print_cell(const mesoscale::CellSummary& s, const mesoscale::TowBodies& bodies) {
   fmt::print("areal density        {:.4f} kg/m^2\n", s.areal_density);
   fmt::print("crimp                {:.3f} % warp, {:.3f} % weft\n", 100.0 * s.crimp[0], 100.0 * s.crimp[1]);
   fmt::print("gap closure          {:.2f} deg\n", degrees * s.gap_closure_angle);
@@ -211,6 +227,9 @@ void print_cell(const mesoscale::CellSummary& s) {
              degrees * s.locking_angle);
   fmt::print("contact fraction     {:.2f} % of one face at 0.05 mm\n", 100.0 * s.contact_area_fraction);
   fmt::print("tow fibre fraction   {:.3f}\n", s.tow_fibre_volume_fraction);
+  fmt::print(
+      "tows as bodies       {:.2g} % off the closed volume, {:.2g} % of it in two tows ({:.3g} mm voxels)\n",
+      100.0 * bodies.volume_error, 100.0 * bodies.overlap_share, 1e3 * bodies.voxel);
 }
 
 void print_friction(const FrictionStage& stage) {
@@ -239,10 +258,17 @@ void print_friction(const FrictionStage& stage) {
   for (const std::string& note : stage.notes) fmt::print("{}\n", note);
 }
 
-void print_stamping(const macroscale::StampingSummary& s) {
-  fmt::print("peak punch force     {:.1f} N\n", s.peak_punch_force);
-  fmt::print("largest shear angle  {:.2f} deg\n", degrees * s.shear_angle_max);
-  fmt::print("largest draw-in      {:.2f} mm\n", 1e3 * s.draw_in_max);
+void print_stamping(const macroscale::StampingSummary& s, const std::optional<macroscale::GridError>& grid) {
+  const bool known = grid && grid->known;
+  const macroscale::GridError e = grid.value_or(macroscale::GridError{});
+  const auto error = [&](double value, const char* unit) {
+    return known ? fmt::format(" (estimated grid error {:.2g} {})", value, unit) : std::string();
+  };
+  fmt::print("peak punch force     {:.1f} N{}\n", s.peak_punch_force, error(e.force, "N"));
+  fmt::print("largest shear angle  {:.2f} deg{}\n", degrees * s.shear_angle_max,
+             error(degrees * e.shear_angle, "deg"));
+  fmt::print("largest draw-in      {:.2f} mm{}\n", 1e3 * s.draw_in_max, error(1e3 * e.draw_in, "mm"));
+  if (grid && !known) fmt::print("grid error           not known: {}\n", grid->reason);
   fmt::print("energy residual      {:.2e} of the punch work\n", s.energy_residual_max);
   fmt::print("force balance        {:.2e} of the punch force\n", s.force_balance_residual_max);
   fmt::print("steps                {} ({} tried again with half the step), {} Newton iterations, {} nodes\n",
@@ -273,9 +299,9 @@ Case read_part(const RunOptions& options, Part part) {
 }
 
 void print_findings(const Case& a_case, const Findings& findings, Part part, const fs::path& folder) {
-  if (findings.cell && part != Part::friction) print_cell(findings.cell->summary);
+  if (findings.cell && part != Part::friction) print_cell(findings.cell->summary, findings.pictures->bodies);
   if (findings.friction && !findings.stamping) print_friction(*findings.friction);
-  if (findings.stamping) print_stamping(findings.stamping->summary);
+  if (findings.stamping) print_stamping(findings.stamping->summary, findings.grid_error);
   print_attention(report_input(a_case, findings));
   fmt::print("results              {}\n", folder.string());
 }
@@ -349,13 +375,24 @@ RunEnding say_interrupted(const RunOptions& options, const RunFolder& folder, co
   return {exit_failed, true, reason};
 }
 
-// Whether the stamping need not run: then its tools need not be read either.
+// Whether the stamping need not run.
 bool stamped_before(const RunOptions& options, const Case& a_case, const Resumption& resumption) {
   if (resumption.record && resumption.record->complete()) return true;
   const Cache cache(options.cache,
                     [](const std::string&) {});  // what is wrong with it is said when it is used
   const auto record = cache.find(inputs_of(ChainStage::macroscale, a_case).key(), read_stamping_record);
   return record && record->complete();
+}
+
+// Whether a stage is left to run that needs the tools: reading them takes seconds.
+bool tools_are_needed(const RunOptions& options, const Case& a_case, const fs::path& folder,
+                      const Resumption& resumption) {
+  if (!a_case.stamping) return false;
+  if (!stamped_before(options, a_case, resumption)) return true;
+  const Cache cache(options.cache, [](const std::string&) {});
+  return a_case.grid_error &&
+         !known_grid_error(resumption.entry == Entry::fresh ? fs::path() : folder, cache,
+                           inputs_of(ChainStage::grid_error, a_case).key());  // a fresh run clears its folder
 }
 
 RunEnding run_part(const RunOptions& options, Part part) {
@@ -368,7 +405,7 @@ RunEnding run_part(const RunOptions& options, Part part) {
   const fs::path path = output_folder(options, a_case.name);
   Resumption resumption = look_for_resumption(options, a_case, path);
   // Before the folder is touched: a tool that cannot be used must not cost what an earlier run left.
-  if (a_case.stamping && !stamped_before(options, a_case, resumption)) load_tools(a_case);
+  if (tools_are_needed(options, a_case, path, resumption)) load_tools(a_case);
   RunFolder folder(a_case, path, options.force, resumption.entry);
   const Cache cache(options.cache, [&](const std::string& line) { folder.log(line); });
   const InterruptGuard guard;
@@ -387,7 +424,9 @@ RunEnding run_part(const RunOptions& options, Part part) {
                   .checkpoint_interval = options.checkpoint_interval,
                   .stop = InterruptGuard::interrupted,
                   .quiet = options.quiet});
-  if (findings.stamping && findings.stamping->summary.stopped)
+  run_grid_error(a_case, options, folder, cache, findings);
+  const bool stopped_late = findings.grid_error && InterruptGuard::interrupted();
+  if (findings.stamping && (findings.stamping->summary.stopped || stopped_late))
     return say_interrupted(options, folder, findings, steps);
   write_findings(a_case, folder, findings);
 

@@ -307,6 +307,7 @@ class ConfigReader {
       stages.insert(Stage::orientation_study);
       stages.insert(Stage::stamping);
     }
+    if (stages.count(Stage::stamping) > 0) stages.insert(Stage::grid_error);
     if (given("friction_test")) stages.insert(Stage::friction_test);
     if (given("friction") || stages.size() > 1) stages.insert(Stage::friction);
     const bool weave = given("weave") || given("cell") || given("fabric") || given("forming");
@@ -368,6 +369,8 @@ class ConfigReader {
         return " by the friction test";
       case Stage::orientation_study:
         return " by the orientation study";
+      case Stage::grid_error:
+        return " for the grid error";
       case Stage::always:
         return "";
       case Stage::cell:

@@ -216,7 +216,7 @@ std::vector<Key> blank_keys() {
   const auto stamping = Stage::stamping;
   return {
       {.path = "blank.shape", .type = KeyType::choice, .presence = defaulted, .default_text = "rectangle",
-       .choices = {"rectangle", "circle", "polygon"}, .stage = stamping,
+       .choices = {"rectangle", "circle", "polygon", "drawing"}, .stage = stamping,
        .help = "Outline of the blank; the grid follows the tows and is trimmed to it."},
       {.path = "blank.size", .type = KeyType::pair, .unit = "mm", .presence = required, .range = "(0 mm, 100000 mm)",
        .stage = stamping, .used_when = "blank.shape=rectangle", .help = "Along x and y, centred on the punch axis."},
@@ -227,6 +227,15 @@ std::vector<Key> blank_keys() {
        .range = "[-100000 mm, 100000 mm]", .columns = 2, .stage = stamping, .used_when = "blank.shape=polygon",
        .help = "Corners [x, y] in order along the edge, at least three, for instance "
                "[[-160 mm, -160 mm], [160 mm, -160 mm], [0 mm, 200 mm]]."},
+      {.path = "blank.drawing.file", .type = KeyType::file, .presence = required, .stage = stamping,
+       .used_when = "blank.shape=drawing",
+       .help = "DXF (text) or STEP with one plane face; the largest ring is the edge, all others are holes."},
+      {.path = "blank.drawing.length_unit", .type = KeyType::choice, .presence = required,
+       .choices = {"mm", "cm", "m", "in"}, .stage = stamping, .used_when = "blank.shape=drawing",
+       .help = "Of the drawing's numbers; a unit that the drawing states must be the same."},
+      {.path = "blank.drawing.chord_error", .type = KeyType::quantity, .unit = "mm", .presence = defaulted,
+       .default_text = "0.01 mm", .range = "(0 mm, 10 mm]", .stage = stamping, .used_when = "blank.shape=drawing",
+       .help = "Arcs become chords that stay this near to them."},
       {.path = "blank.holes", .type = KeyType::rows, .unit = "mm", .presence = optional,
        .range = "[-100000 mm, 100000 mm]", .columns = 3, .stage = stamping,
        .help = "Round holes [x, y, radius], for instance [[0 mm, 120 mm, 8 mm]]."},
@@ -237,6 +246,10 @@ std::vector<Key> blank_keys() {
        .help = "Upper bound of the node spacing; the size is divided into whole cells."},
       {.path = "blank.plies", .type = KeyType::integer, .presence = defaulted, .default_text = "1", .range = "[1, 1]",
        .stage = stamping, .help = "This version forms one ply."},
+      {.path = "blank.grid_error", .type = KeyType::choice, .presence = defaulted, .default_text = "on",
+       .choices = {"on", "off"}, .stage = Stage::grid_error,
+       .help = "on: the case is run once more on twice the spacing, for the error that the grid leaves in force, "
+               "angle and draw-in; a sixth of the run's time."},
   };
 }
 

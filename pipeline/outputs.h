@@ -11,8 +11,10 @@
 #include <utility>
 #include <vector>
 
+#include "macroscale/grid_error.h"
 #include "macroscale/stamping.h"
 #include "mesoscale/cell_spec.h"
+#include "mesoscale/level_set.h"
 
 /// The files of a run as text. Functions named after a file return its bytes; `write_file` puts them in
 /// place. Numbers are written in the shortest form that reads back as the same double, so equal results give
@@ -89,8 +91,10 @@ std::string contact_csv(const mesoscale::ContactArea& contact, std::span<const d
 /// Parts that were not computed are absent, and their keys with them.
 struct SummaryRecord {
   std::optional<mesoscale::CellSummary> cell = {};
+  std::optional<mesoscale::TowBodies> tow_bodies = {};
   std::optional<double> contact_area_fraction_binder = {};  ///< phi under the binder's mean pressure [-]
   std::optional<macroscale::StampingSummary> stamping = {};
+  std::optional<macroscale::GridError> grid_error = {};
   std::optional<macroscale::StampingFailure> failure = {};  ///< of a stamping that stopped
   std::string advice = {};                                  ///< what to try after it
 };

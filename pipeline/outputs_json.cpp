@@ -95,6 +95,18 @@ Json stamping_json(const macroscale::StampingSummary& summary) {
   return out;
 }
 
+Json grid_error_json(const macroscale::GridError& error) {
+  if (!error.known) return {{"not_known", error.reason}};
+  return {{"punch_force_N", error.force},
+          {"punch_force_share", error.force_share},
+          {"shear_angle_deg", degrees * error.shear_angle},
+          {"draw_in_mm", 1e3 * error.draw_in},
+          {"companion_spacing_mm", {1e3 * error.spacing[0], 1e3 * error.spacing[1]}},
+          {"companion_nodes", error.nodes},
+          {"companion_peak_punch_force_N", error.companion_force},
+          {"extrapolated_peak_punch_force_N", error.extrapolated_force}};
+}
+
 Json failure_json(const macroscale::StampingFailure& failure, const std::string& advice) {
   Json worst = Json::array(), energies = Json::object();
   for (const auto& unknown : failure.worst)
@@ -334,7 +346,14 @@ Json texts_json(const std::vector<std::pair<std::string, std::string>>& entries)
 std::string summary_json(const SummaryRecord& record) {
   Json root = Json::object();
   if (record.cell) root["mesoscale"] = cell_json(*record.cell, record.contact_area_fraction_binder);
+  if (record.cell && record.tow_bodies) {
+    root["mesoscale"]["tow_volume_error"] = record.tow_bodies->volume_error;
+    root["mesoscale"]["tow_overlap_share"] = record.tow_bodies->overlap_share;
+    root["mesoscale"]["tow_overlap_depth_mm"] = 1e3 * record.tow_bodies->overlap_depth;
+  }
   if (record.stamping) root["macroscale"] = stamping_json(*record.stamping);
+  if (record.stamping && record.grid_error)
+    root["macroscale"]["grid_error"] = grid_error_json(*record.grid_error);
   if (record.failure) root["failure"] = failure_json(*record.failure, record.advice);
   return file_text(root);
 }

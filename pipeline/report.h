@@ -4,6 +4,7 @@
 #include <string>
 #include <vector>
 
+#include "macroscale/grid_error.h"
 #include "macroscale/stamping.h"
 #include "mesoscale/cell_spec.h"
 #include "pipeline/outputs.h"
@@ -42,6 +43,7 @@ struct ReportInput {
   std::optional<macroscale::StampingSummary> stamping = {};
   std::vector<macroscale::HistoryRow> history = {};
   std::optional<macroscale::BlankState> blank = {};
+  std::optional<macroscale::GridError> grid_error = {};
   macroscale::ArtefactSpec artefact = {};
 
   std::vector<std::string> warnings = {};  ///< shown beside the verdicts
@@ -74,6 +76,7 @@ struct Limits {
   double force_balance = 1e-3;          ///< of the largest punch force
   double symmetry = 1e-3;               ///< of the largest shear angle or draw-in
   double numerical_dissipation = 0.02;  ///< of the punch work
+  double grid_error = 0.02;             ///< of the peak punch force, as estimated
   double twist = 0.05;  ///< of the stored energy: more, and the control is no longer a help but a law
   double outside_calibration = 0.10;  ///< of the friction work: above it the verdict asks for attention
 };

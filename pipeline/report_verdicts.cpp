@@ -71,8 +71,26 @@ void peak_force(Verdicts& out, const ReportInput& input) {
                          [](const auto& a, const auto& b) { return a.punch_force < b.punch_force; });
     where = fmt::format(", reached at {} mm", significant(1e3 * peak->punch_displacement, 3));
   }
-  out.add(Tone::note,
-          fmt::format("Peak punch force: {} N{}.", significant(input.stamping->peak_punch_force, 4), where));
+  std::string error;
+  if (input.grid_error && input.grid_error->known)
+    error = fmt::format(" (estimated grid error {} N)", significant(input.grid_error->force, 2));
+  out.add(Tone::note, fmt::format("Peak punch force: {} N{}{}.",
+                                  significant(input.stamping->peak_punch_force, 4), error, where));
+}
+
+void grid(Verdicts& out, const ReportInput& input) {
+  if (!input.grid_error) return;
+  const auto& error = *input.grid_error;
+  if (!error.known) {
+    out.add(Tone::note, fmt::format("The error that the grid leaves is not known: {}.", error.reason));
+    return;
+  }
+  out.weigh(error.force_share, limits.grid_error, Tone::attention,
+            fmt::format("The grid leaves an estimated {} N, {}° and {} mm in force, shear and draw-in, from "
+                        "the same case on a spacing of {} mm",
+                        significant(error.force, 2), significant(degrees * error.shear_angle, 2),
+                        significant(1e3 * error.draw_in, 2), significant(1e3 * error.spacing[0], 3)),
+            "The grid leaves a noticeable error in the punch force: use a smaller blank.spacing");
 }
 
 void shear_and_draw_in(Verdicts& out, const ReportInput& input) {
@@ -112,7 +130,9 @@ void balances(Verdicts& out, const macroscale::StampingSummary& summary) {
 
 void symmetry(Verdicts& out, const macroscale::StampingSummary& summary) {
   if (summary.symmetry_gap_shear < 0.0 || summary.symmetry_gap_draw_in < 0.0) {
-    out.add(Tone::note, "The blank is not a 0/90 square, so there is no eightfold symmetry to check.");
+    out.add(Tone::note,
+            "The blank and its grid have not got the eight symmetries of the square about the tows, so there "
+            "is nothing to check by symmetry.");
     return;
   }
   const double gap = std::max(summary.symmetry_gap_shear, summary.symmetry_gap_draw_in);
@@ -193,6 +213,7 @@ std::vector<Verdict> verdicts(const ReportInput& input) {
     what_was_stamped(out, input);
     peak_force(out, input);
     shear_and_draw_in(out, input);
+    grid(out, input);
     balances(out, *input.stamping);
     symmetry(out, *input.stamping);
     artefacts(out, input.artefact);

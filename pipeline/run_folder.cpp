@@ -10,6 +10,7 @@
 #include <fmt/format.h>
 
 #include "core/sparse_solver.h"
+#include "pipeline/grid_error_stage.h"
 #include "pipeline/stage_keys.h"
 #include "pipeline/stamping_record.h"
 
@@ -44,6 +45,10 @@ void demand_own_folder(const Case& a_case, const fs::path& folder) {
                      "Choose another folder with -o, or write over it with --force."}});
 }
 
+bool stays_for_resume(const fs::path& name) {
+  return name == fs::path(checkpoint_name).filename() || name == fs::path(grid_error_name).filename();
+}
+
 double cpu_seconds() {
   rusage usage{};
   getrusage(RUSAGE_SELF, &usage);
@@ -75,7 +80,7 @@ RunFolder::RunFolder(const Case& a_case, fs::path folder, bool force, Entry entr
     fs::remove_all(path_ / name);
   if (fs::exists(path_ / "macroscale"))
     for (const auto& file : fs::directory_iterator(path_ / "macroscale"))
-      if (entry != Entry::resume || file.path() != path_ / checkpoint_name) fs::remove_all(file.path());
+      if (entry != Entry::resume || !stays_for_resume(file.path().filename())) fs::remove_all(file.path());
   if (entry == Entry::fresh) fs::remove_all(path_ / "macroscale");
   write_resolved(a_case, path_);
 }

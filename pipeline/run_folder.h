@@ -14,7 +14,7 @@ namespace heddle::pipeline {
 /// How a run enters its folder.
 enum class Entry {
   fresh,   ///< removes what an earlier run of the case left: old results never stand beside new inputs
-  resume,  ///< the same, but leaves the checkpoint until a newer one takes its place
+  resume,  ///< the same, but leaves checkpoint and grid error until newer ones take their place
   look     ///< changes nothing: what would be written is there already
 };
 

@@ -22,12 +22,17 @@ std::string value_of(const Setting& setting) {
   return "sha256 " + sha256(read_file(setting.folder / setting.text));
 }
 
+bool stamps(ChainStage stage) {
+  return stage == ChainStage::macroscale || stage == ChainStage::grid_error;
+}
+
 /// Stages whose results go into this one, itself last.
 std::vector<ChainStage> chain_of(ChainStage stage, const Case& a_case) {
   std::vector<ChainStage> chain;
   if (a_case.cell) chain.push_back(ChainStage::mesoscale);
   if (stage != ChainStage::mesoscale && a_case.friction) chain.push_back(ChainStage::friction);
-  if (stage == ChainStage::macroscale) chain.push_back(ChainStage::macroscale);
+  if (stamps(stage)) chain.push_back(ChainStage::macroscale);
+  if (stage == ChainStage::grid_error) chain.push_back(stage);
   return chain;
 }
 
@@ -38,6 +43,7 @@ std::vector<std::string> source_groups(ChainStage stage) {
     case ChainStage::friction:
       return {"core", "friction", "mesoscale", "stages", "build"};
     case ChainStage::macroscale:
+    case ChainStage::grid_error:
       return {"core", "friction", "mesoscale", "macroscale", "stages", "build"};
   }
   throw std::logic_error("no such stage");
@@ -63,6 +69,8 @@ std::string name_of(ChainStage stage) {
       return "friction";
     case ChainStage::macroscale:
       return "macroscale";
+    case ChainStage::grid_error:
+      return "grid_error";
   }
   throw std::logic_error("no such stage");
 }
@@ -87,6 +95,8 @@ bool reads(ChainStage stage, const Key& key) {
       return stage == ChainStage::friction;
     case Stage::stamping:
       return stage == ChainStage::macroscale;
+    case Stage::grid_error:
+      return stage == ChainStage::grid_error;
     case Stage::orientation_study:  // a list of runs, each with its own blank.orientation
       return false;
   }
@@ -116,7 +126,7 @@ StageInputs inputs_of(ChainStage stage, const Case& a_case) {
     if (std::find(groups.begin(), groups.end(), name) != groups.end())
       result.inputs.push_back({"sources." + name, hash});
   result.inputs.push_back({"machine.processor", processor_name()});
-  if (stage == ChainStage::macroscale) result.inputs.push_back({"machine.blas", blas_name()});
+  if (stamps(stage)) result.inputs.push_back({"machine.blas", blas_name()});
   return result;
 }
 
@@ -144,6 +154,7 @@ std::string case_hash(const Case& a_case) {
   if (a_case.cell) text += inputs_of(ChainStage::mesoscale, a_case).text();
   if (a_case.friction) text += inputs_of(ChainStage::friction, a_case).text();
   if (a_case.stamping) text += inputs_of(ChainStage::macroscale, a_case).text();
+  if (a_case.grid_error) text += inputs_of(ChainStage::grid_error, a_case).text();
   return sha256(text);
 }
 

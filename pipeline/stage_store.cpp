@@ -28,6 +28,12 @@ auto members(Summary& s) {
                   s.consolidated_thickness);
 }
 
+static_assert(sizeof(mesoscale::TowBodies) == 4 * sizeof(double));
+template <class Bodies>
+auto body_members(Bodies& b) {
+  return std::tie(b.voxel, b.volume_error, b.overlap_share, b.overlap_depth);
+}
+
 static_assert(sizeof(friction::PowerLawFilm) == 6 * sizeof(double));
 template <class Film>
 auto film_members(Film& f) {
@@ -128,6 +134,7 @@ void write_pictures(Hdf5Writer& file, const WeavePictures& pictures) {
   file.write("/voxels/count", std::vector<int>(voxels.count.begin(), voxels.count.end()));
   file.write("/voxels/origin", std::span<const double>(voxels.origin));
   file.write("/voxels/spacing", std::span<const double>(voxels.spacing));
+  write_row(file, "/bodies", body_members(pictures.bodies));
   file.write("/voxels/labels", std::vector<int>(voxels.labels.begin(), voxels.labels.end()));
 }
 
@@ -155,6 +162,7 @@ WeavePictures read_pictures(const Hdf5Reader& file) {
   pictures.tows.resize(corners.size() / 9);
   for (std::size_t i = 0; i < 9 * pictures.tows.size(); ++i)
     pictures.tows[i / 9][i / 3 % 3][i % 3] = corners[i];
+  read_row(file, "/bodies", body_members(pictures.bodies));
   auto& voxels = pictures.voxels;
   const std::vector<int> count = file.integers("/voxels/count"), labels = file.integers("/voxels/labels");
   if (count.size() != 3) throw Hdf5Error("/voxels/count has the wrong length");

@@ -184,6 +184,7 @@ WeavePictures weave_pictures(const mesoscale::CellSpec& spec) {
   const mesoscale::TriMesh mesh = mesoscale::tow_surfaces(cell);
   for (const auto& t : mesh.triangles)
     pictures.tows.push_back({mesh.vertices[t[0]], mesh.vertices[t[1]], mesh.vertices[t[2]]});
+  pictures.bodies = mesoscale::tow_bodies(cell);
   return pictures;
 }
 

@@ -39,6 +39,7 @@ struct WeavePictures {
   std::vector<mesoscale::Outline> section;
   std::vector<Triangle> tows;
   mesoscale::VoxelLabels voxels;  ///< 32 a pitch, 32 through the thickness
+  mesoscale::TowBodies bodies;
 };
 WeavePictures weave_pictures(const mesoscale::CellSpec& spec);
 

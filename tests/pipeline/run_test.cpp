@@ -225,6 +225,72 @@ TEST_CASE(
   CHECK(signature < 2.5);
 }
 
+TEST_CASE("a stamping says what its grid leaves, runs the companion once, and is the same without it",
+          "[pipeline][run][grid_error]") {
+  const Scratch scratch;
+  const std::vector<std::string> fine = {"blank.spacing=16 mm", "process.steps=8",
+                                         "process.punch={stroke: 30 mm, time: 0.18 s}",
+                                         heddle::test::tools_by_shape};
+  auto options = options_for("thermostamping.yaml", scratch / "on", fine);
+  options.cache = scratch / "cache";
+  REQUIRE(pipeline::run_case(options) == pipeline::exit_done);
+  const fs::path macroscale = scratch / "on" / "macroscale";
+  // First order: what is left is the change to the companion over (32 mm / 16 mm - 1); the change at the peak
+  // is no larger than the largest over the stroke.
+  const double peak = number(scratch / "on", "peak_punch_force_N"),
+               companion = number(scratch / "on", "companion_peak_punch_force_N");
+  const std::string summary = pipeline::read_file(scratch / "on" / "summary.json");
+  const double error = std::stod(summary.substr(summary.find("\"punch_force_N\": ") + 17));
+  CHECK(error > 0.0);
+  CHECK(error >= Approx(std::abs(peak - companion)));
+  CHECK(summary.find("\"companion_nodes\": 121") != std::string::npos);
+  CHECK_THAT(pipeline::read_file(scratch / "on" / "report.html"), Catch::Contains("estimated grid error"));
+
+  // From the cache, and from the folder where there is no cache: the same bytes, and nothing is run.
+  const auto before = contents(scratch / "on");
+  auto again = options;
+  again.output = scratch / "again";
+  REQUIRE(pipeline::run_case(again) == pipeline::exit_done);
+  CHECK((contents(scratch / "again") == before));
+  CHECK_THAT(pipeline::read_file(scratch / "again" / "manifest.json"), !Catch::Contains("\"reused\": false"));
+  auto resumed = options;
+  resumed.cache.clear();
+  resumed.resume = true;
+  fs::remove(scratch / "on" / "report.html");
+  REQUIRE(pipeline::run_case(resumed) == pipeline::exit_done);
+  CHECK((contents(scratch / "on") == before));
+
+  // The stamping knows nothing of it.
+  auto off = options_for("thermostamping.yaml", scratch / "off", with(fine, "blank.grid_error=off"));
+  off.cache = scratch / "cache";
+  REQUIRE(pipeline::run_case(off) == pipeline::exit_done);
+  CHECK(pipeline::read_file(scratch / "off/macroscale/history.csv") ==
+        pipeline::read_file(macroscale / "history.csv"));
+  CHECK(pipeline::read_file(scratch / "off/summary.json").find("grid_error") == std::string::npos);
+}
+
+TEST_CASE("a blank drawn as DXF stamps as the same blank written as a circle with a hole",
+          "[pipeline][run][tools]") {
+  const Scratch scratch;
+  std::ofstream(scratch / "blank.dxf") << "  0\nSECTION\n  2\nHEADER\n  9\n$INSUNITS\n 70\n4\n  0\nENDSEC\n"
+                                          "  0\nSECTION\n  2\nENTITIES\n"
+                                          "  0\nCIRCLE\n 10\n0\n 20\n0\n 40\n150\n"
+                                          "  0\nCIRCLE\n 10\n0\n 20\n125\n 40\n10\n"
+                                          "  0\nENDSEC\n  0\nEOF\n";
+  const std::string orientation = ", orientation: 0 deg, spacing: 20 mm, grid_error: off}";
+  const double circle = stamped(
+      scratch, "circle",
+      with(small, "blank={shape: circle, radius: 150 mm, holes: [[0 mm, 125 mm, 10 mm]]" + orientation),
+      "peak_punch_force_N");
+  const double drawn =
+      stamped(scratch, "drawn",
+              with(small, "blank={shape: drawing, drawing: {file: " + (scratch / "blank.dxf").string() +
+                              ", length_unit: mm}" + orientation),
+              "peak_punch_force_N");
+  CHECK(drawn == Approx(circle).epsilon(1e-3));  // circles are polygons of other fineness
+  CHECK(fs::exists(scratch / "drawn/inputs/blank.drawing.file.dxf"));
+}
+
 TEST_CASE("the orientation study stamps each blank, pulls each sample and reports both", "[pipeline][run]") {
   const Scratch scratch;
   std::vector<std::string> settings = with(small, "orientation_study.blanks=[0 deg, 45 deg]");
