@@ -398,10 +398,8 @@ bool tools_are_needed(const RunOptions& options, const Case& a_case, const fs::p
 RunEnding run_part(const RunOptions& options, Part part) {
   Case a_case = read_part(options, part);
   const auto threads = limit_threads(options.threads);
-  if (part == Part::all && a_case.orientation_study) {
-    load_tools(a_case);
-    return {run_orientation_study(options, a_case), false, ""};
-  }
+  if (part == Part::all && a_case.orientation_study)
+    return {run_orientation_study(options, std::move(a_case)), false, ""};
   const fs::path path = output_folder(options, a_case.name);
   Resumption resumption = look_for_resumption(options, a_case, path);
   // Before the folder is touched: a tool that cannot be used must not cost what an earlier run left.

@@ -9,13 +9,16 @@
 #include <fmt/format.h>
 
 #include "core/progress.h"
+#include "pipeline/cache.h"
 #include "pipeline/chart.h"
 #include "pipeline/export_vtu.h"
+#include "pipeline/interrupt.h"
 #include "pipeline/report_figures.h"
 #include "pipeline/report_style.h"
 #include "pipeline/run_folder.h"
 #include "pipeline/stage_keys.h"
 #include "pipeline/stages.h"
+#include "pipeline/stamping_record.h"
 
 namespace heddle::pipeline {
 
@@ -197,8 +200,34 @@ std::string list(const std::vector<std::string>& texts) {
 
 // ---- the runs
 
+// The stamping of one blank under the key of its inputs: a list that was interrupted goes on with the next.
+std::string key_of(const Case& a_case, double angle) {
+  StageInputs inputs = inputs_of(ChainStage::macroscale, a_case);
+  inputs.inputs.push_back({"orientation_study.blank", shortest(angle)});
+  return inputs.key();
+}
+
+macroscale::StampingResult stamp_or_find(const macroscale::StampingSpec& spec,
+                                         const mesoscale::FabricProperties& fabric,
+                                         const friction::Model& model,
+                                         const macroscale::StampingObserver& observe, const std::string& key,
+                                         const Cache& cache, bool& reused) {
+  macroscale::StampingControl control;
+  const auto found = cache.find(key, read_stamping_record);
+  reused = found && found->complete();
+  if (reused) control.resume_from = &found->at;
+  control.observe = observe;
+  control.stop = InterruptGuard::interrupted;
+  control.keep = [&](const macroscale::StampingCheckpoint& checkpoint, bool last) {
+    if (reused || !last || checkpoint.step != spec.process.steps) return;
+    StampingRecord record{key, "orientation study", spec.process.steps, checkpoint, {}};
+    cache.store(key, bytes_of(record));
+  };
+  return macroscale::run_stamping(spec, fabric, model, control);
+}
+
 OrientedBlank stamp(const Case& a_case, double angle, const mesoscale::FabricProperties& fabric,
-                    const friction::Model& model, RunFolder& folder, bool quiet) {
+                    const friction::Model& model, RunFolder& folder, const Cache& cache, bool quiet) {
   OrientedBlank blank;
   blank.id = id_of(angle);
   blank.angle = angle;
@@ -210,9 +239,11 @@ OrientedBlank stamp(const Case& a_case, double angle, const mesoscale::FabricPro
     progress.update(step,
                     fmt::format("punch {:.1f} mm, {:.0f} N", 1e3 * row.punch_displacement, row.punch_force));
   };
-  blank.result = folder.stage("blank_" + blank.id,
-                              [&](bool&) { return macroscale::run_stamping(spec, fabric, model, observe); });
+  blank.result = folder.stage("blank_" + blank.id, [&](bool& reused) {
+    return stamp_or_find(spec, fabric, model, observe, key_of(a_case, angle), cache, reused);
+  });
   progress.finish();
+  if (blank.result.summary.stopped) return blank;
   const std::string place = "cases/" + blank.id + "/";
   SummaryRecord record;
   record.stamping = blank.result.summary;
@@ -336,8 +367,18 @@ std::string orientation_html(const OrientationFindings& findings) {
          "folder.</footer>\n</main>\n</body>\n</html>\n";
 }
 
-int run_orientation_study(const RunOptions& options, const Case& a_case) {
+int run_orientation_study(const RunOptions& options, Case a_case) {
+  const Cache known(options.cache,
+                    [](const std::string&) {});  // what is wrong with it is said when it is used
+  const auto& angles = a_case.orientation_study->blanks;
+  const bool all_known = std::all_of(angles.begin(), angles.end(), [&](double angle) {
+    const auto found = known.find(key_of(a_case, angle), read_stamping_record);
+    return found && found->complete();
+  });
+  if (!all_known) load_tools(a_case);
   RunFolder folder(a_case, output_folder(options, a_case.name), options.force);
+  const Cache cache(options.cache, [&](const std::string& line) { folder.log(line); });
+  const InterruptGuard guard;
   const auto cell = folder.stage("mesoscale", [&](bool&) { return mesoscale::analyse(*a_case.cell); });
   folder.write("mesoscale/fabric.json", fabric_json(cell.fabric));
   const FrictionStage friction =
@@ -350,7 +391,18 @@ int run_orientation_study(const RunOptions& options, const Case& a_case) {
                   blank_in_words(a_case.stamping->blank), a_case.cell->weave.pattern,
                   a_case.orientation_study->blanks.size(), 1e3 * a_case.stamping->process.stroke);
   for (const double angle : a_case.orientation_study->blanks) {
-    findings.blanks.push_back(stamp(a_case, angle, cell.fabric, friction.model, folder, options.quiet));
+    findings.blanks.push_back(
+        stamp(a_case, angle, cell.fabric, friction.model, folder, cache, options.quiet));
+    if (findings.blanks.back().result.summary.stopped) {
+      folder.write_log();
+      std::cerr << fmt::format(
+          "heddle: interrupted at the blank of {} deg; the same command goes on with it: {} of {} blanks {} "
+          "in "
+          "the cache\n",
+          angle_text(angle), findings.blanks.size() - 1, angles.size(),
+          options.cache.empty() ? "would be" : "are");
+      return exit_failed;
+    }
     folder.write("table.csv", orientation_table_csv(findings.blanks));
   }
   folder.stage("friction_samples", [&](bool&) {

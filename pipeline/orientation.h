@@ -43,7 +43,8 @@ std::string orientation_html(const OrientationFindings& findings);
 
 /// Stamps the blank at each angle of `orientation_study.blanks` and pulls a sample at each angle of
 /// `orientation_study.friction`. Writes table.csv, report.html, friction/ and cases/ID/. Returns an exit
-/// code; a stamping that stopped leaves its files and the study goes on.
-int run_orientation_study(const RunOptions& options, const Case& a_case);
+/// code; a stamping that stopped leaves its files and the study goes on. Blanks that the cache holds are not
+/// stamped again; a signal ends the study between two of them.
+int run_orientation_study(const RunOptions& options, Case a_case);
 
 }  // namespace heddle::pipeline

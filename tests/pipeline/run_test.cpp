@@ -295,8 +295,9 @@ TEST_CASE("the orientation study stamps each blank, pulls each sample and report
   const Scratch scratch;
   std::vector<std::string> settings = with(small, "orientation_study.blanks=[0 deg, 45 deg]");
   settings = with(settings, "process.steps=5");
-  REQUIRE(pipeline::run_case(options_for("orientation.yaml", scratch / "study", settings)) ==
-          pipeline::exit_done);
+  auto options = options_for("orientation.yaml", scratch / "study", settings);
+  options.cache = scratch / "cache";
+  REQUIRE(pipeline::run_case(options) == pipeline::exit_done);
   const fs::path study = scratch / "study";
   for (const char* file : {"table.csv", "report.html", "friction/friction_test.csv",
                            "cases/0_deg/history.csv", "cases/45_deg/blank.vtu", "cases/45_deg/summary.json"})
@@ -305,6 +306,13 @@ TEST_CASE("the orientation study stamps each blank, pulls each sample and report
   CHECK(std::count(table.begin(), table.end(), '\n') == 3);
   const std::string samples = pipeline::read_file(study / "friction/friction_test.csv");
   CHECK(std::count(samples.begin(), samples.end(), '\n') == 8);
+  const auto first = contents(study);
+  REQUIRE(pipeline::run_case(options) == pipeline::exit_done);  // out of the cache
+  CHECK((contents(study) == first));
+  const std::string manifest = pipeline::read_file(study / "manifest.json");
+  const auto blank = manifest.find("blank_45_deg");
+  REQUIRE(blank != std::string::npos);
+  CHECK(manifest.find("\"reused\": true", blank) != std::string::npos);
   // Tows at 45 degrees turn the draw-in from the middles of the sides to the corners.
   CHECK(number(study / "cases/0_deg", "draw_in_max_mm") >
         1.2 * number(study / "cases/45_deg", "draw_in_max_mm"));
