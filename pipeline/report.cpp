@@ -63,7 +63,10 @@ std::string results(const ReportInput& input) {
     out += result("Peak punch force", significant(summary.peak_punch_force, 4), "N");
     out += result("Largest shear angle", fmt::format("{:.1f}", degrees * summary.shear_angle_max), "°");
     out += result("Largest draw-in", significant(1e3 * summary.draw_in_max, 3), "mm");
-    out += result("Energy residual", significant(100.0 * summary.energy_residual_max, 2), "%");
+    if (input.grid_error && input.grid_error->known)
+      out += result("Grid error of the force, estimated", significant(input.grid_error->force, 2), "N");
+    else
+      out += result("Energy residual", significant(100.0 * summary.energy_residual_max, 2), "%");
   } else if (input.cell) {
     const auto& cell = *input.cell;
     out += result("Areal density", significant(cell.areal_density, 3), "kg/m²");
