@@ -1,11 +1,14 @@
 #include "pipeline/config_reader.h"
 
 #include <catch2/catch.hpp>
+#include <cmath>
 #include <cstring>
 #include <filesystem>
 #include <fstream>
+#include <set>
 #include <sstream>
 
+#include "core/units.h"
 #include "pipeline/case.h"
 #include "pipeline/config_reference.h"
 
@@ -247,6 +250,82 @@ TEST_CASE("a problem set on the command line is named by its number", "[pipeline
                                                                   {"--set #6", "value.power_index.anchor"},
                                                                   {"--set #7", "set.syntax"},
                                                                   {"--set #8", "yaml.syntax"}});
+}
+
+TEST_CASE("an effect that is written as off is as good as absent", "[pipeline][config][effect]") {
+  const std::string without = pipeline::resolved_yaml(read_case_text(small_stamping, "x.yaml", "").settings);
+  const auto resolved = [&](const std::string& effects, const std::vector<std::string>& assignments = {}) {
+    const Case read =
+        read_case_text(small_stamping + "effects: " + effects + "\n", "x.yaml", "", assignments);
+    CHECK(read.notes.empty());
+    CHECK_FALSE(read.friction->model.effects.tool_temperature_shift);
+    return pipeline::resolved_yaml(read.settings);
+  };
+  CHECK(resolved("{tool_temperature_shift: off}") == without);
+  CHECK(resolved("{tool_temperature_shift: off, static_peak: 'off'}") == without);  // of a later version too
+  CHECK(resolved("{tool_temperature_shift: {slope: -9e-4 1/K}}", {"effects.tool_temperature_shift=off"}) ==
+        without);
+  CHECK(pipeline::resolved_yaml(read_case_text(small_stamping + "effects: {tool_temperature_shift: {slope: 0 "
+                                                                "1/K}}\n",
+                                               "x.yaml", "")
+                                    .settings) != without);  // the comparison can fail
+
+  const auto ids = [](const std::string& effects) {
+    std::vector<std::string> found;
+    for (const Problem& problem : problems_of(small_stamping + "effects: " + effects + "\n"))
+      found.push_back(problem.id);
+    return found;
+  };
+  CHECK(ids("{tool_temperature_shift: on}") ==
+        std::vector<std::string>{"effects.tool_temperature_shift.map"});
+  CHECK(ids("{tool_temperature_shifd: off}") ==
+        std::vector<std::string>{"effects.tool_temperature_shifd.unknown"});
+  CHECK(ids("{tool_temperature_shift: {slope: off}}") ==
+        std::vector<std::string>{"effects.tool_temperature_shift.slope.unit"});
+}
+
+namespace {
+
+/// The outermost values a range lets pass, as a file holds them; none where there is no bound.
+std::vector<std::string> outermost_values(const pipeline::Key& key) {
+  const pipeline::Interval range = pipeline::interval_of(key.range, key.unit);
+  const double inside =
+      1e-9 * (std::isfinite(range.high) && std::isfinite(range.low) ? range.high - range.low : 1.0);
+  std::vector<std::string> values;
+  if (std::isfinite(range.low))
+    values.push_back(write_quantity(range.low_open ? range.low + inside : range.low, key.unit));
+  if (std::isfinite(range.high))
+    values.push_back(write_quantity(range.high_open ? range.high - inside : range.high, key.unit));
+  return values;
+}
+
+}  // namespace
+
+// The schema and the room behind it state the same range under the same id: a room that asks for more would
+// contradict the reference page.
+TEST_CASE("what the schema lets pass, no room finds out of range", "[pipeline][config]") {
+  const std::string law = "friction={law: stribeck, calibration: {plate_area: 0.01 m^2}, ";
+  const std::vector<std::vector<std::string>> cases{
+      {"effects={tool_temperature_shift: {slope: 0 1/K}}"},
+      {law + "scale: 0.5, exponent: 0.14}"},
+      {law + "form: linear, offset: 0.1, slope: 0.1, reference_hersey: 1}"}};
+  std::set<std::string> tried;
+  for (const auto& assignments : cases) {
+    const Case base = read_case_text(small_stamping, "x.yaml", configs, assignments);
+    for (const pipeline::Key& key : pipeline::schema()) {
+      const bool number = key.type == pipeline::KeyType::quantity || key.type == pipeline::KeyType::integer;
+      if (!number || key.range.empty() || !base.settings.has(key.path) || !tried.insert(key.path).second)
+        continue;
+      for (const std::string& value : outermost_values(key)) {
+        INFO(key.path << " = " << value);
+        auto with_value = assignments;
+        with_value.push_back(key.path + "=" + value);
+        for (const Problem& problem : problems_of(small_stamping, with_value))
+          CHECK_FALSE(problem.id == key.path + ".range");
+      }
+    }
+  }
+  CHECK(tried.size() > 50);
 }
 
 TEST_CASE("keys of a law that is not the chosen one are allowed and noted", "[pipeline][config]") {
