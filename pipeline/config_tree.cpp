@@ -19,7 +19,9 @@ std::string join_path(const std::string& parent, const std::string& key) {
 /// octal integers; the events show all of it.
 class TreeBuilder : public YAML::EventHandler {
  public:
-  TreeBuilder(std::string file, Problems& problems) : file_(std::move(file)), problems_(problems) {}
+  /// @param top  path that the only key of the text stands for; "" = the keys are those of a file
+  TreeBuilder(std::string file, Problems& problems, std::string top = "")
+      : file_(std::move(file)), problems_(problems), top_(std::move(top)) {}
 
   ConfigNode root;
 
@@ -145,7 +147,7 @@ class TreeBuilder : public YAML::EventHandler {
   std::string path() const {
     std::string path;
     for (const Open& open : open_) {
-      if (open.has_key) path = join_path(path, open.key);
+      if (open.has_key) path = path.empty() && !top_.empty() ? top_ : join_path(path, open.key);
     }
     return path;
   }
@@ -168,6 +170,7 @@ class TreeBuilder : public YAML::EventHandler {
 
   std::string file_;
   Problems& problems_;
+  std::string top_;
   std::vector<Open> open_;
 };
 
@@ -245,12 +248,10 @@ int first_line_indented_by_tab(const std::string& text) {
   return 0;
 }
 
-}  // namespace
-
-ParsedConfig parse_config(const std::string& text, const std::string& file) {
+ParsedConfig parse(const std::string& text, const std::string& file, const std::string& top) {
   ParsedConfig parsed;
   parsed.root = empty_map(file, 1);
-  TreeBuilder builder(file, parsed.problems);
+  TreeBuilder builder(file, parsed.problems, top);
   try {
     std::istringstream stream(text);
     YAML::Parser parser(stream);
@@ -279,6 +280,12 @@ ParsedConfig parse_config(const std::string& text, const std::string& file) {
   return parsed;
 }
 
+}  // namespace
+
+ParsedConfig parse_config(const std::string& text, const std::string& file) {
+  return parse(text, file, "");
+}
+
 Problems apply_setting(ConfigNode& root, const std::string& assignment, const std::string& place) {
   const std::size_t equals = assignment.find('=');
   const std::string path = assignment.substr(0, equals);
@@ -287,10 +294,10 @@ Problems apply_setting(ConfigNode& root, const std::string& assignment, const st
              "For instance --set weave.gap='1.5 mm'.", place, 0}};
   }
 
-  ParsedConfig parsed = parse_config("value: " + assignment.substr(equals + 1), place);
+  ParsedConfig parsed = parse("value: " + assignment.substr(equals + 1), place, path);
   for (Problem& problem : parsed.problems) {
     problem.line = 0;
-    problem.key = path;
+    if (problem.key.empty()) problem.key = path;
   }
   if (!parsed.problems.empty()) return parsed.problems;
   if (parsed.root.entries.size() != 1) {

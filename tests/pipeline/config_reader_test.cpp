@@ -248,7 +248,7 @@ TEST_CASE("a problem set on the command line is named by its number", "[pipeline
                                                                   {"--set #3", "weave.gpa.unknown"},
                                                                   {"--set #4", "set.syntax"},
                                                                   {"--set #5", "name.first.set"},
-                                                                  {"--set #6", "value.power_index.anchor"},
+                                                                  {"--set #6", "resin.power_index.anchor"},
                                                                   {"--set #7", "set.syntax"},
                                                                   {"--set #8", "yaml.syntax"}});
 }
