@@ -39,8 +39,7 @@ std::string other_separator(std::string_view header) {
   return header.find('\t') != std::string_view::npos ? "tabs" : "";
 }
 
-[[noreturn]] void refuse(const char* id, const std::string& file, int line, std::string rule,
-                         std::string way_out) {
+[[noreturn]] void refuse(Rule id, const std::string& file, int line, std::string rule, std::string way_out) {
   throw InputError({{id, "", "", std::move(rule), std::move(way_out), file, line}});
 }
 
@@ -49,7 +48,7 @@ std::string other_separator(std::string_view header) {
 CsvTable parse_csv(std::string_view text, const std::string& file) {
   if (text.starts_with(byte_order_mark)) text.remove_prefix(byte_order_mark.size());
   if (text.find('\0') != std::string_view::npos)
-    refuse("csv.encoding", file, 0, "is not plain text (it holds zero bytes; UTF-16 perhaps)",
+    refuse("csv.encoding"_rule, file, 0, "is not plain text (it holds zero bytes; UTF-16 perhaps)",
            "Save the table as CSV in UTF-8.");
   CsvTable table;
   int line = 0;
@@ -58,7 +57,8 @@ CsvTable parse_csv(std::string_view text, const std::string& file) {
     if (content.empty() || content.front() == '#') continue;
     if (table.header.cells.empty()) {
       if (const std::string used = other_separator(content); !used.empty())
-        refuse("csv.separator", file, line, fmt::format("separates its columns by {}; commas are read", used),
+        refuse("csv.separator"_rule, file, line,
+               fmt::format("separates its columns by {}; commas are read", used),
                "Save the table with commas, and a point as the decimal sign.");
       table.header = row_of(content, line);
       continue;
@@ -68,13 +68,13 @@ CsvTable parse_csv(std::string_view text, const std::string& file) {
     if (found == wanted)
       table.rows.push_back(std::move(row));
     else
-      table.problems.push_back({"csv.cells", "row", fmt::format("{} cells", found),
+      table.problems.push_back({"csv.cells"_rule, "row", fmt::format("{} cells", found),
                                 fmt::format("must have {}, as the header has", wanted),
                                 "Add or remove commas; a number has a point as its decimal sign.", file,
                                 line});
   }
   if (table.header.cells.empty())
-    refuse("csv.empty", file, 0, "holds no table", "Write a header line and a line for each row.");
+    refuse("csv.empty"_rule, file, 0, "holds no table", "Write a header line and a line for each row.");
   return table;
 }
 

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <iterator>
+#include <ostream>
 
 namespace heddle {
 namespace {
@@ -36,6 +37,18 @@ Problems problems_of_file(const Problems& problems, const std::string& file) {
 }
 
 }  // namespace
+
+RuleId RuleFamily::of(std::string_view key) const {
+  const std::size_t star = name_.find('*');
+  std::string text = std::string(name_.substr(0, star)) + std::string(key);
+  std::string_view rest = name_.substr(star + 1);
+  if (text.empty()) rest.remove_prefix(std::min(rest.size(), rest.find_first_not_of('.')));
+  return {text + std::string(rest), name_};
+}
+
+std::ostream& operator<<(std::ostream& stream, const RuleId& id) {
+  return stream << id.text();
+}
 
 std::string format(const Problems& problems) {
   std::string text;

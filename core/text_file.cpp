@@ -9,8 +9,7 @@ namespace heddle {
 
 namespace {
 
-[[noreturn]] void refuse(const char* id, const std::filesystem::path& path, const char* rule,
-                         const char* way_out) {
+[[noreturn]] void refuse(Rule id, const std::filesystem::path& path, const char* rule, const char* way_out) {
   throw InputError({{id, "", "", rule, way_out, path.string(), 0}});
 }
 
@@ -19,13 +18,13 @@ namespace {
 std::string read_text_file(const std::filesystem::path& path) {
   std::error_code unknown;  // a file that cannot be looked at is told apart by the attempt to read it
   if (!std::filesystem::exists(path, unknown) && !unknown)
-    refuse("file.missing", path, "does not exist", "Check the path.");
+    refuse("file.missing"_rule, path, "does not exist", "Check the path.");
   if (std::filesystem::is_directory(path, unknown))
-    refuse("file.folder", path, "is a folder", "Name a file in it.");
+    refuse("file.folder"_rule, path, "is a folder", "Name a file in it.");
   std::ifstream stream(path, std::ios::binary);
   std::ostringstream text;
   if (stream) text << stream.rdbuf();
-  if (!stream) refuse("file.unreadable", path, "cannot be read", "Check its permissions.");
+  if (!stream) refuse("file.unreadable"_rule, path, "cannot be read", "Check its permissions.");
   return text.str();
 }
 

@@ -148,7 +148,7 @@ class Fit {
   void demand_enough_rows() const {
     if (degrees_of_freedom() >= 0) return;
     throw InputError(
-        {{.id = "friction.calibration.rows",
+        {{.id = "friction.calibration.rows"_rule,
           .key = "data",
           .value = fmt::format("{} rows", rows_.size()),
           .rule = fmt::format("must hold at least {} rows, one for each parameter", free_.size()),
@@ -163,7 +163,7 @@ class Fit {
     qr.compute(jacobian.colwise().normalized());
     if (qr.rank() == jacobian.cols()) return;
     throw InputError(
-        {{.id = "friction.calibration.rank",
+        {{.id = "friction.calibration.rank"_rule,
           .key = "data",
           .value = fmt::format("{} rows", rows_.size()),
           .rule = fmt::format("must tell {} parameters apart, but two act alike on every row", free_.size()),

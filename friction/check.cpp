@@ -1,6 +1,7 @@
 #include <fmt/format.h>
 
 #include <cmath>
+#include <limits>
 #include <string>
 
 #include "friction/model.h"
@@ -21,38 +22,38 @@ bool positive(double x) {
 
 void check_film(const PowerLawFilm& film, Problems& problems) {
   require(problems, positive(film.consistency),
-          {.id = "friction.film.consistency.range",
+          {.id = "resin.consistency.range"_rule,
            .key = "resin.consistency",
            .value = fmt::format("{} Pa s^n", film.consistency),
            .rule = "must satisfy 0 < m",
            .way_out = "Polypropylene at 180 degC: 6790 Pa s^n."});
   require(problems, film.index > 0.0 && film.index <= 1.0,
-          {.id = "friction.film.index.range",
+          {.id = "resin.power_index.range"_rule,
            .key = "resin.power_index",
            .value = fmt::format("{}", film.index),
            .rule = "must satisfy 0 < n <= 1",
            .way_out = "The resin thins with rate (Gorczyca et al., Eq. 4); polypropylene: 0.37 to 0.41."});
   require(problems, film.thickness > 0.0 && film.thickness < 0.01,
-          {.id = "friction.film.thickness.range",
+          {.id = "resin.film_thickness.range"_rule,
            .key = "resin.film_thickness",
            .value = fmt::format("{} m", film.thickness),
            .rule = "must satisfy 0 < h < 0.01 m",
            .way_out = "The paper uses 0.07 mm; write 0.07 mm."});
-  require(problems, film.activation_energy >= 0.0 && film.activation_energy < 1e6,
-          {.id = "friction.film.activation_energy.range",
+  require(problems, film.activation_energy >= 0.0 && film.activation_energy <= 1e6,
+          {.id = "resin.activation_energy.range"_rule,
            .key = "resin.activation_energy",
            .value = fmt::format("{} J/mol", film.activation_energy),
-           .rule = "must satisfy 0 <= E < 1000 kJ/mol",
+           .rule = "must satisfy 0 <= E <= 1000 kJ/mol",
            .way_out = "Polypropylene melts: 38 to 46 kJ/mol; 0 makes the film insensitive to temperature."});
   require(
       problems, positive(film.reference_temperature),
-      {.id = "friction.film.reference_temperature.range",
+      {.id = "resin.reference_temperature.range"_rule,
        .key = "resin.reference_temperature",
        .value = fmt::format("{} K", film.reference_temperature),
        .rule = "must lie above absolute zero",
        .way_out = "It is the temperature at which resin.consistency was measured, for instance 180 degC."});
   require(problems, positive(film.rate_floor),
-          {.id = "friction.film.rate_floor.range",
+          {.id = "resin.rate_floor.range"_rule,
            .key = "resin.rate_floor",
            .value = fmt::format("{} 1/s", film.rate_floor),
            .rule = "must satisfy 0 < g0",
@@ -61,7 +62,7 @@ void check_film(const PowerLawFilm& film, Problems& problems) {
 
 void check_law(const Coulomb& law, const CalibrationBox&, Problems& problems) {
   require(problems, law.coefficient >= 0.0 && law.coefficient < 10.0,
-          {.id = "friction.coulomb.coefficient.range",
+          {.id = "friction.coefficient.range"_rule,
            .key = "friction.coefficient",
            .value = fmt::format("{}", law.coefficient),
            .rule = "must satisfy 0 <= mu < 10",
@@ -70,13 +71,13 @@ void check_law(const Coulomb& law, const CalibrationBox&, Problems& problems) {
 
 void check_law(const HerseyPower& law, const CalibrationBox&, Problems& problems) {
   require(problems, positive(law.scale),
-          {.id = "friction.power.scale.range",
+          {.id = "friction.scale.range"_rule,
            .key = "friction.scale",
            .value = fmt::format("{}", law.scale),
            .rule = "must satisfy 0 < C",
            .way_out = "Let `heddle calibrate` find it from friction tests."});
   require(problems, std::abs(law.exponent) < 1.0,
-          {.id = "friction.power.exponent.range",
+          {.id = "friction.exponent.range"_rule,
            .key = "friction.exponent",
            .value = fmt::format("{}", law.exponent),
            .rule = "must satisfy -1 < s < 1",
@@ -86,7 +87,7 @@ void check_law(const HerseyPower& law, const CalibrationBox&, Problems& problems
 
 void check_law(const HerseyLinear& law, const CalibrationBox& box, Problems& problems) {
   require(problems, positive(law.reference),
-          {.id = "friction.linear.reference.range",
+          {.id = "friction.reference_hersey.range"_rule,
            .key = "friction.reference_hersey",
            .value = fmt::format("{}", law.reference),
            .rule = "must satisfy 0 < Hs0",
@@ -96,11 +97,14 @@ void check_law(const HerseyLinear& law, const CalibrationBox& box, Problems& pro
   const double low = law.offset + law.slope * box.hersey_low / law.reference;
   const double high = law.offset + law.slope * box.hersey_high / law.reference;
   require(problems, low > 0.0 && high > 0.0,
-          {.id = "friction.linear.positive",
+          {.id = "friction.offset.positive"_rule,
            .key = "friction.offset",
            .value = fmt::format("{} (slope {})", law.offset, law.slope),
-           .rule = fmt::format("must give mu > 0 from Hs = {} to {}", box.hersey_low, box.hersey_high),
-           .way_out = "Raise the offset, or calibrate the power form, which cannot turn negative."});
+           .rule = box.hersey_high < std::numeric_limits<double>::max() / 1e10
+                       ? fmt::format("must give mu > 0 from Hs = {} to {}", box.hersey_low, box.hersey_high)
+                       : fmt::format("must give mu > 0 from Hs = {} on", box.hersey_low),
+           .way_out = "Raise the offset, or calibrate the power form, which cannot turn negative.",
+           .others = {"friction.slope", "friction.reference_hersey"}});
 }
 
 void check_box(const CalibrationBox& box, Problems& problems) {
@@ -108,7 +112,7 @@ void check_box(const CalibrationBox& box, Problems& problems) {
   require(problems,
           ordered(box.hersey_low, box.hersey_high) && ordered(box.pressure_low, box.pressure_high) &&
               ordered(box.speed_low, box.speed_high),
-          {.id = "friction.box.order",
+          {.id = "friction.calibration.box_order"_rule,
            .key = "friction.calibration",
            .value = fmt::format("Hs {}..{}, p {}..{} Pa, U {}..{} m/s", box.hersey_low, box.hersey_high,
                                 box.pressure_low, box.pressure_high, box.speed_low, box.speed_high),
@@ -118,13 +122,13 @@ void check_box(const CalibrationBox& box, Problems& problems) {
 
 void check_effect(const ToolTemperatureShift& effect, Problems& problems) {
   require(problems, std::abs(effect.slope) <= 0.1,
-          {.id = "friction.tool_temperature_shift.slope.range",
+          {.id = "effects.tool_temperature_shift.slope.range"_rule,
            .key = "effects.tool_temperature_shift.slope",
            .value = fmt::format("{} 1/K", effect.slope),
            .rule = "must satisfy |slope| <= 0.1 1/K",
            .way_out = "Table 4 gives -9.3e-4 1/K for the term; 0 switches the effect off."});
   require(problems, positive(effect.reference),
-          {.id = "friction.tool_temperature_shift.reference.range",
+          {.id = "effects.tool_temperature_shift.reference.range"_rule,
            .key = "effects.tool_temperature_shift.reference",
            .value = fmt::format("{} K", effect.reference),
            .rule = "must lie above absolute zero",

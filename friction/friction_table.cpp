@@ -82,14 +82,14 @@ class TableReader {
 
   void check_known(std::string_view name) {
     if (name == name_column || find_column(name) || std::ranges::count(passed_over, name) > 0) return;
-    add("friction.table.column.unknown", "", "is no column of a friction-test table",
+    add("friction.table.column.unknown"_rule, "", "is no column of a friction-test table",
         "Known columns: " + known_columns() + ".", name, table_.header.line);
   }
 
   void check_present(std::string_view name) {
     const auto count = std::ranges::count(header(), name);
     if (count == 1) return;
-    add(count == 0 ? "friction.table.column.missing" : "friction.table.column.twice", "",
+    add(count == 0 ? "friction.table.column.missing"_rule : "friction.table.column.twice"_rule, "",
         count == 0 ? "must be a column of the table" : "must be there once",
         "Known columns: " + known_columns() + ".", name, table_.header.line);
   }
@@ -102,14 +102,14 @@ class TableReader {
     if (reading.ok()) {
       known->store(row, reading.value);
     } else {
-      add("friction.table.number", std::string(cell), "must be a number in " + std::string(known->unit),
+      add("friction.table.number"_rule, std::string(cell), "must be a number in " + std::string(known->unit),
           "Write digits only; the unit stands in the column's name.", name, line);
     }
   }
 
-  void add(std::string id, std::string value, std::string rule, std::string way_out, std::string_view key,
+  void add(Rule id, std::string value, std::string rule, std::string way_out, std::string_view key,
            int line) {
-    problems_.push_back({.id = std::move(id),
+    problems_.push_back({.id = id,
                          .key = std::string(key),
                          .value = std::move(value),
                          .rule = std::move(rule),

@@ -73,7 +73,7 @@ bool positive(double x) {
 void check_row(const FrictionTestRow& row, bool measured_force_needed, Problems& problems) {
   const auto demand_positive = [&](double value, const char* column, const char* unit) {
     if (positive(value)) return;
-    problems.push_back({.id = fmt::format("friction.test.{}.range", column),
+    problems.push_back({.id = "friction.test.*.range"_family.of(column),
                         .key = fmt::format("row {}, {}", row.name, column),
                         .value = fmt::format("{} {}", value, unit),
                         .rule = "must be positive",
@@ -85,7 +85,7 @@ void check_row(const FrictionTestRow& row, bool measured_force_needed, Problems&
   demand_positive(row.fabric_temperature, "fabric_temperature", "K");
   if (row.measured_force) demand_positive(*row.measured_force, "measured_force", "N");
   if (measured_force_needed && !row.measured_force) {
-    problems.push_back({.id = "friction.test.measured_force.missing",
+    problems.push_back({.id = "friction.test.measured_force.missing"_rule,
                         .key = fmt::format("row {}, force_measured_N", row.name),
                         .value = "",
                         .rule = "must be given for a calibration",
@@ -100,7 +100,7 @@ Problems check(const FrictionRig& rig) {
   // An upper bound of 1 m^2 catches an area given in cm^2 or mm^2 as if in m^2.
   if (!(rig.plate_area > 0.0 && rig.plate_area < 1.0)) {
     problems.push_back(
-        {.id = "friction.rig.plate_area.range",
+        {.id = "friction.calibration.plate_area.range"_rule,
          .key = "friction.calibration.plate_area",
          .value = fmt::format("{} m^2", rig.plate_area),
          .rule = "must satisfy 0 < A < 1 m^2",
@@ -109,11 +109,12 @@ Problems check(const FrictionRig& rig) {
   const auto [low, high] = rig.plate_area_band;
   if (!(low > 0.0 && low <= rig.plate_area && rig.plate_area <= high && high < 1.0)) {
     problems.push_back(
-        {.id = "friction.rig.plate_area_band.order",
+        {.id = "friction.calibration.plate_area_band.order"_rule,
          .key = "friction.calibration.plate_area_band",
          .value = fmt::format("[{} m^2, {} m^2]", low, high),
          .rule = fmt::format("must satisfy 0 < low <= {} m^2 <= high < 1 m^2", rig.plate_area),
-         .way_out = "Give the range in which the plate area surely lies; equal ends if it is known."});
+         .way_out = "Give the range in which the plate area surely lies; equal ends if it is known.",
+         .others = {"friction.calibration.plate_area"}});
   }
   return problems;
 }
@@ -121,7 +122,7 @@ Problems check(const FrictionRig& rig) {
 Problems check(std::span<const FrictionTestRow> rows, bool measured_force_needed) {
   Problems problems;
   if (rows.empty()) {
-    problems.push_back({.id = "friction.test.empty",
+    problems.push_back({.id = "friction.test.empty"_rule,
                         .key = "data",
                         .value = "",
                         .rule = "must hold at least one friction test",

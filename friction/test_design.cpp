@@ -44,14 +44,16 @@ class Reader {
     problems_ = table_.problems;
     line_ = table_.header.line;
     if (!std::ranges::equal(table_.header.cells, layout))
-      report("header", "", fmt::format("{}", fmt::join(table_.header.cells, ",")),
-             fmt::format("must be {}", fmt::join(layout, ",")), "One line a parameter follows.");
+      report("friction.design.header"_rule, "", fmt::format("{}", fmt::join(table_.header.cells, ",")),
+             fmt::format("must start with the line {}", fmt::join(layout, ",")),
+             "One line a parameter follows.");
     else
       for (const CsvRow& row : table_.rows) read_factor(row);
     line_ = 0;
+    const bool read = problems_.empty();
     for (const auto& [name, factor] : factors())
-      if (problems_.empty() && (design_.*factor.levels).empty())
-        report("missing", name, "", "must have a line", "Give at least its baseline.");
+      if (read && (design_.*factor.levels).empty())
+        report("friction.design.missing"_rule, name, "", "must have a line", "Give at least its baseline.");
     if (!problems_.empty()) throw InputError(std::move(problems_));
     return std::move(design_);
   }
@@ -62,13 +64,14 @@ class Reader {
     const auto& cells = row.cells;
     const auto found = factors().find(cells[0]);
     if (found == factors().end()) {
-      report("parameter", cells[0], "", "is no parameter of the friction test",
+      report("friction.design.parameter"_rule, cells[0], "", "is no parameter of the friction test",
              "Known are velocity, normal_force, tool_temperature, fabric_temperature and orientation.");
       return;
     }
     const Factor& factor = found->second;
     if (cells[1] != factor.unit)
-      report("unit", cells[0], cells[1], fmt::format("must be in {}", factor.unit), "Convert the levels.");
+      report("friction.design.unit"_rule, cells[0], cells[1], fmt::format("must be in {}", factor.unit),
+             "Convert the levels.");
     add_level(factor, cells[0], cells[2]);
     std::stringstream levels(cells[3]);
     for (std::string level; std::getline(levels, level, ';');) add_level(factor, cells[0], level);
@@ -78,14 +81,15 @@ class Reader {
     double value = 0.0;
     const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
     if (error != std::errc() || end != text.data() + text.size())
-      report("number", name, text, "must be a number", "Separate levels by ; without spaces.");
+      report("friction.design.number"_rule, name, text, "must be a number",
+             "Separate levels by ; without spaces.");
     else
       (design_.*factor.levels).push_back(factor.to_si(value));
   }
 
-  void report(const std::string& id, const std::string& key, const std::string& value,
-              const std::string& rule, const std::string& way_out) {
-    problems_.push_back({"friction.design." + id, key, value, rule, way_out, file_, line_});
+  void report(Rule id, const std::string& key, const std::string& value, const std::string& rule,
+              const std::string& way_out) {
+    problems_.push_back({id, key, value, rule, way_out, file_, line_});
   }
 
   const CsvTable& table_;

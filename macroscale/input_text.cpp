@@ -19,10 +19,10 @@ namespace {
 /// OpenCASCADE reads some megabytes a second; a tool made of a hundred faces takes 0.1 MB.
 constexpr std::uintmax_t largest_step = 64u << 20;
 
-[[noreturn]] void refuse(const char* id, const std::string& key, const std::filesystem::path& file, int line,
+[[noreturn]] void refuse(RuleFamily id, const std::string& key, const std::filesystem::path& file, int line,
                          std::string rule, std::string way_out) {
-  throw InputError({{fmt::format("{}.{}", key, id), key + ".file", "", std::move(rule), std::move(way_out),
-                     file.string(), line}});
+  throw InputError(
+      {{id.of(key), key + ".file", "", std::move(rule), std::move(way_out), file.string(), line}});
 }
 
 /// "#12=(LENGTH_UNIT()...)" without blanks, and where it starts.
@@ -147,19 +147,21 @@ bool same_length(double a, double b) {
 }  // namespace
 
 std::uintmax_t require_file(const std::filesystem::path& file, const std::string& key) {
-  const auto refuse_path = [&](const char* id, const char* rule, const char* way_out) {
-    throw InputError({{fmt::format("{}.{}", key, id), key + ".file", file.string(), rule, way_out}});
+  const auto refuse_path = [&](RuleFamily id, const char* rule, const char* way_out) {
+    throw InputError({{id.of(key), key + ".file", file.string(), rule, way_out}});
   };
   std::error_code error;
   const auto status = std::filesystem::status(file, error);
   if (!std::filesystem::exists(status))
-    refuse_path("missing", "must be there; no such file",
+    refuse_path("*.file.missing"_family, "must be there; no such file",
                 "Paths are taken from the folder of the case file.");
   if (!std::filesystem::is_regular_file(status))
-    refuse_path("folder", "must be a file", "Name the file itself.");
+    refuse_path("*.file.folder"_family, "must be a file", "Name the file itself.");
   const std::uintmax_t size = std::filesystem::file_size(file, error);
-  if (error || !std::ifstream(file)) refuse_path("unreadable", "must be readable", "Check who may read it.");
-  if (size == 0) refuse_path("empty", "must not be empty; it holds 0 bytes", "Export it again.");
+  if (error || !std::ifstream(file))
+    refuse_path("*.file.unreadable"_family, "must be readable", "Check who may read it.");
+  if (size == 0)
+    refuse_path("*.file.empty"_family, "must not be empty; it holds 0 bytes", "Export it again.");
   return size;
 }
 
@@ -175,7 +177,7 @@ std::string unit_name(double metres) {
 void require_step(const std::filesystem::path& file, double length_unit, const std::string& key) {
   const std::uintmax_t size = require_file(file, key);
   if (size > largest_step) {
-    refuse("size", key, file, 0,
+    refuse("*.file.size"_family, key, file, 0,
            fmt::format("must be a STEP file of at most {} MB; it has {}", largest_step >> 20, size >> 20),
            "Export only the faces that touch the blank, as surfaces and not as facets.");
   }
@@ -185,22 +187,23 @@ void require_step(const std::filesystem::path& file, double length_unit, const s
   const std::string text = buffer.str();
   const std::size_t start = text.find_first_not_of(" \t\r\n");
   if (start == std::string::npos || text.compare(start, 13, "ISO-10303-21;") != 0) {
-    refuse("format", key, file, 1, "must start with ISO-10303-21; as STEP files do",
+    refuse("*.file.format"_family, key, file, 1, "must start with ISO-10303-21; as STEP files do",
            "It is another kind of file: export the tool as STEP (AP203, AP214 or AP242).");
   }
   if (text.find("END-ISO-10303-21;") == std::string::npos) {
-    refuse("cut_off", key, file, static_cast<int>(std::count(text.begin(), text.end(), '\n')) + 1,
+    refuse("*.file.cut_off"_family, key, file,
+           static_cast<int>(std::count(text.begin(), text.end(), '\n')) + 1,
            "must end with END-ISO-10303-21;", "It was cut off: copy or export it again.");
   }
   const auto assigned = Units(unit_statements(text)).assigned();
   if (assigned.empty()) {
-    refuse("unit", key, file, 0,
+    refuse("*.file.unit"_family, key, file, 0,
            "must state its length unit (GLOBAL_UNIT_ASSIGNED_CONTEXT with a LENGTH_UNIT)",
            "Export it again with a unit.");
   }
   for (const auto& [metres, line] : assigned) {
     if (!same_length(metres, assigned.front().first)) {
-      refuse("unit", key, file, line,
+      refuse("*.file.unit"_family, key, file, line,
              fmt::format("must state one length unit; it states {} and {}", unit_name(assigned.front().first),
                          unit_name(metres)),
              "Export the tool as one part.");
@@ -208,7 +211,7 @@ void require_step(const std::filesystem::path& file, double length_unit, const s
   }
   const auto& [stated, line] = assigned.front();
   if (!same_length(stated, length_unit)) {
-    throw InputError({{key + ".length_unit.stated", key + ".length_unit", unit_name(length_unit),
+    throw InputError({{"*.length_unit.stated"_family.of(key), key + ".length_unit", unit_name(length_unit),
                        fmt::format("must be the unit that {} states: {} (its line {})",
                                    file.filename().string(), unit_name(stated), line),
                        fmt::format("Write length_unit: {}, or export the file in {}.", unit_name(stated),

@@ -234,9 +234,8 @@ std::vector<double> volumes(const TriangleMesh& mesh, const std::vector<int>& la
 class Findings {
  public:
   Findings(std::string key, std::string file) : key_(std::move(key)), file_(std::move(file)) {}
-  void add(const char* rule_name, std::string rule, std::string way_out) {
-    problems_.push_back({fmt::format("{}.{}", key_, rule_name), key_ + ".file", "", std::move(rule),
-                         std::move(way_out), file_});
+  void add(RuleFamily id, std::string rule, std::string way_out) {
+    problems_.push_back({id.of(key_), key_ + ".file", "", std::move(rule), std::move(way_out), file_});
   }
   bool any() const { return !problems_.empty(); }
   Problems take() { return std::move(problems_); }
@@ -249,14 +248,14 @@ class Findings {
 /// Numbers first: nothing else can be asked of a mesh that fails here.
 void examine_numbers(const TriangleMesh& mesh, Findings& f) {
   if (mesh.triangles.empty()) {
-    f.add("empty", "must hold triangles; it holds none",
+    f.add("*.empty"_family, "must hold triangles; it holds none",
           "Export the tool as triangles (STL, OBJ) or as a solid (STEP).");
     return;
   }
   const int n = static_cast<int>(mesh.vertices.size());
   for (const Triangle& t : mesh.triangles) {
     if (*std::min_element(t.begin(), t.end()) < 0 || *std::max_element(t.begin(), t.end()) >= n) {
-      f.add("index",
+      f.add("*.index"_family,
             fmt::format("must name vertices 0 to {}; a triangle names [{}, {}, {}]", n - 1, t[0], t[1], t[2]),
             "Write the file again.");
       return;
@@ -270,7 +269,7 @@ void examine_numbers(const TriangleMesh& mesh, Findings& f) {
   }
   if (bad > 0) {
     const Place& p = mesh.vertices[first];
-    f.add("finite",
+    f.add("*.finite"_family,
           fmt::format("must have finite coordinates; {}, the first is vertex {} at ({:g}, {:g}, {:g})",
                       counted(bad, "vertex has not", "vertices have not"), first, p[0], p[1], p[2]),
           "The program that wrote it divided by zero: write the file again.");
@@ -283,7 +282,7 @@ void examine_triangles(const TriangleMesh& mesh, Findings& f) {
     if (degenerate(mesh, t)) flat.add(centroid(mesh, t));
   }
   if (flat.count > 0) {
-    f.add("degenerate",
+    f.add("*.degenerate"_family,
           fmt::format("must have no triangle without area; {}, the first at {}",
                       counted(flat.count, "has none", "have none"), in_mm(flat.first)),
           "Such triangles have no normal.");
@@ -295,7 +294,7 @@ void examine_triangles(const TriangleMesh& mesh, Findings& f) {
   }
   const std::vector<int> again = repetitions(by_place);
   if (!again.empty()) {
-    f.add("repeated",
+    f.add("*.repeated"_family,
           fmt::format("must have each triangle once; {} there again, the first at {}",
                       counted(again.size(), "is", "are"), in_mm(centroid(mesh, mesh.triangles[again[0]]))),
           "A piece was exported twice.");
@@ -312,27 +311,27 @@ void examine_edges(const TriangleMesh& mesh, const std::vector<EdgeUse>& uses, T
     if (last - first == 2 && uses[first].upwards == uses[first + 1].upwards) against.add(place);
   });
   if (open.count > 0 && rule == TopologyRule::closed) {
-    f.add("closed",
+    f.add("*.closed"_family,
           fmt::format("must be closed; {} only one triangle, the first at {}",
                       counted(open.count, "edge has", "edges have"), in_mm(open.first)),
           "Inside and outside are undefined at a gap.");
   }
   if (crowded.count > 0) {
-    f.add("edge_manifold",
+    f.add("*.edge_manifold"_family,
           fmt::format("must have two triangles at each edge; {} more, the first at {}",
                       counted(crowded.count, "edge has", "edges have"), in_mm(crowded.first)),
           "An inner wall or a part that only touches another ends there: export the outer skin alone.");
   }
   if (against.count > 0) {
     f.add(
-        "oriented",
+        "*.oriented"_family,
         fmt::format("must be oriented as one; at {} two neighbours turn against each other, the first at {}",
                     counted(against.count, "edge", "edges"), in_mm(against.first)),
         "Normals of neighbours must point to the same side.");
   }
   const Tally pinched = pinched_vertices(mesh, uses);
   if (pinched.count > 0) {
-    f.add("vertex_manifold",
+    f.add("*.vertex_manifold"_family,
           fmt::format(
               "must have one sheet at each vertex; at {} several sheets touch in a point, the first at {}",
               counted(pinched.count, "vertex", "vertices"), in_mm(pinched.first)),
@@ -351,7 +350,7 @@ void examine_crossings(const TriangleMesh& mesh, const Surface& surface, Finding
     const std::size_t i = a.idx(), j = b.idx();
     first = std::min(first, {std::min(i, j), std::max(i, j)});
   }
-  f.add("self_intersection",
+  f.add("*.self_intersection"_family,
         fmt::format("must not cross itself; {}{}, the first at {}",
                     pairs.size() == most_crossings ? "at least " : "",
                     counted(pairs.size(), "pair of triangles does", "pairs of triangles do"),
@@ -381,7 +380,7 @@ void examine_sides(const TriangleMesh& mesh, const Surface& surface, const std::
     if (label[t] == static_cast<int>(t) && six[t] < 0.0) inside_out.add(centroid(mesh, mesh.triangles[t]));
   }
   if (inside_out.count == 0) inside_out.add(centroid(mesh, mesh.triangles[0]));
-  f.add("outward",
+  f.add("*.outward"_family,
         fmt::format("must have normals that point out of the solid; {} of {} inside out, the first with the "
                     "triangle at {}",
                     inside_out.count, counted(count, "piece is", "pieces are"), in_mm(inside_out.first)),

@@ -60,8 +60,8 @@ std::string name_of(int ring) {
 class Findings {
  public:
   explicit Findings(std::string key) : key_(std::move(key)) {}
-  void add(const char* id, std::string rule, std::string way_out) {
-    problems_.push_back({key_ + "." + id, key_, "", std::move(rule), std::move(way_out)});
+  void add(RuleFamily id, std::string rule, std::string way_out) {
+    problems_.push_back({id.of(key_), key_, "", std::move(rule), std::move(way_out)});
   }
   bool any() const { return !problems_.empty(); }
   Problems take() { return std::move(problems_); }
@@ -73,21 +73,21 @@ class Findings {
 
 void examine_points(const Ring& ring, int number, Findings& f) {
   if (ring.size() < 3) {
-    f.add("points",
+    f.add("*.points"_family,
           fmt::format("must have at least three points a border; {} has {}", name_of(number), ring.size()),
           "Add points, or leave the border out.");
     return;
   }
   for (std::size_t i = 0; i < ring.size(); ++i) {
     if (!std::isfinite(ring[i][0]) || !std::isfinite(ring[i][1])) {
-      f.add("finite",
+      f.add("*.finite"_family,
             fmt::format("must have finite coordinates; point {} of {} is ({}, {})", i + 1, name_of(number),
                         ring[i][0], ring[i][1]),
             "Correct the point.");
       return;
     }
     if (ring[i] == ring[(i + 1) % ring.size()]) {
-      f.add("repeated_point",
+      f.add("*.repeated_point"_family,
             fmt::format("must not repeat a point; point {} of {} at {} stands there again", i + 1,
                         name_of(number), in_mm(ring[i][0], ring[i][1])),
             "Leave one of them out; a ring closes by itself.");
@@ -140,12 +140,12 @@ void examine_edges(const std::vector<const Ring*>& rings, Findings& f) {
       const std::string where = in_mm((*place)[0], (*place)[1]);
       if (pair.first == pair.second) {
         const auto [first, second] = std::minmax(edges[i].index, edges[j].index);
-        f.add("simple",
+        f.add("*.simple"_family,
               fmt::format("must not cross or touch itself; {} does at {}, edges {} and {}",
                           name_of(pair.first), where, first + 1, second + 1),
               "Points stand in order around the blank: look for two that are swapped.");
       } else {
-        f.add("apart",
+        f.add("*.apart"_family,
               fmt::format("must keep its borders apart; {} and {} meet at {}", name_of(pair.first),
                           name_of(pair.second), where),
               "Move or shrink the hole, or make the notch a part of the outer border.");
@@ -167,13 +167,13 @@ void examine_nesting(const Outline& outline, Findings& f) {
   for (std::size_t h = 0; h < outline.holes.size(); ++h) {
     const Point2& p = outline.holes[h].front();
     if (!inside(outline.outer, p, false)) {
-      f.add("hole_inside",
+      f.add("*.hole_inside"_family,
             fmt::format("must have its holes inside; hole {} lies outside, at {}", h + 1, in_mm(p[0], p[1])),
             "Move the hole, or leave it out.");
     }
     for (std::size_t other = 0; other < outline.holes.size(); ++other) {
       if (other == h || !inside(outline.holes[other], p, false)) continue;
-      f.add("hole_in_hole",
+      f.add("*.hole_in_hole"_family,
             fmt::format("must have holes apart; hole {} lies in hole {}, at {}", h + 1, other + 1,
                         in_mm(p[0], p[1])),
             "Leave the inner one out.");
@@ -372,7 +372,7 @@ Outline circle(double radius, double chord_error, Point2 centre) {
   const double wanted = cosine > 0.0 ? std::numbers::pi / std::acos(cosine) : 4.0;
   if (!(radius > 0.0) || !(chord_error > 0.0) || !(wanted <= static_cast<double>(most_points))) {
     throw InputError(
-        {{"blank.outline.circle.range", "blank.outline", fmt::format("radius {:g} mm", 1e3 * radius),
+        {{"blank.outline.circle.range"_rule, "blank.outline", fmt::format("radius {:g} mm", 1e3 * radius),
           fmt::format("must have a positive radius and a chord error that {} points reach", most_points),
           "0.01 mm suits a blank of 0.3 m."}});
   }
@@ -413,7 +413,7 @@ Problems check(const Outline& outline, const std::string& key) {
     examine_points(*rings[r], static_cast<int>(r), f);
   }
   if (points > most_points) {
-    f.add("size", fmt::format("must have at most {} points; it has {}", most_points, points),
+    f.add("*.size"_family, fmt::format("must have at most {} points; it has {}", most_points, points),
           "Draw it coarser.");
   }
   if (f.any()) return f.take();
@@ -421,7 +421,7 @@ Problems check(const Outline& outline, const std::string& key) {
   if (f.any()) return f.take();
   const ExactRing outer = exact(outline.outer);
   if (CGAL::sign(twice_area(outer)) <= 0)
-    f.add("orientation", "must run counter-clockwise around a positive area",
+    f.add("*.orientation"_family, "must run counter-clockwise around a positive area",
           "Give the points in reverse order.");
   examine_nesting(outline, f);
   return f.take();

@@ -37,9 +37,9 @@ struct Chain {
 class Source {
  public:
   Source(const OutlineFile& outline, const std::string& key) : outline_(outline), key_(key) {}
-  [[noreturn]] void refuse(const char* id, int line, std::string rule, std::string way_out) const {
-    throw InputError({{fmt::format("{}.file.{}", key_, id), key_ + ".file", "", std::move(rule),
-                       std::move(way_out), outline_.file.string(), line}});
+  [[noreturn]] void refuse(RuleFamily id, int line, std::string rule, std::string way_out) const {
+    throw InputError({{id.of(key_), key_ + ".file", "", std::move(rule), std::move(way_out),
+                       outline_.file.string(), line}});
   }
   const OutlineFile& outline() const { return outline_; }
   const std::string& key() const { return key_; }
@@ -79,11 +79,11 @@ std::vector<Group> read_groups(const Source& source) {
   while (!ended && std::getline(stream, code_text)) {
     ++line;
     if (line == 1 && code_text.starts_with("AutoCAD Binary DXF"))
-      source.refuse("binary", 1, "must be a DXF file in text form; this one is binary",
+      source.refuse("*.file.binary"_family, 1, "must be a DXF file in text form; this one is binary",
                     "Save it as ASCII DXF.");
     const auto code = parse<int>(trimmed(code_text));
     if (!code) {
-      source.refuse("format", line,
+      source.refuse("*.file.format"_family, line,
                     fmt::format("must have a DXF group code (a whole number) here; it has `{}`",
                                 code_text.substr(0, 40)),
                     "It is no DXF file, or a line is missing above: export it again.");
@@ -93,7 +93,9 @@ std::vector<Group> read_groups(const Source& source) {
     groups.push_back({*code, std::string(trimmed(value)), line});
     ended = *code == 0 && groups.back().value == "EOF";
   }
-  if (!ended) source.refuse("cut_off", line, "must end with EOF", "It was cut off: copy or export it again.");
+  if (!ended)
+    source.refuse("*.file.cut_off"_family, line, "must end with EOF",
+                  "It was cut off: copy or export it again.");
   return groups;
 }
 
@@ -145,7 +147,7 @@ class Drawing {
     const auto unit = code ? metres.find(*code) : metres.end();
     if (unit == metres.end()) {
       source_.refuse(
-          "unit", units_->line,
+          "*.file.unit"_family, units_->line,
           fmt::format("must state a unit this reader knows in $INSUNITS; it has {}", units_->value),
           "1 inch, 2 foot, 4 mm, 5 cm, 6 m; 0 says nothing.");
     }
@@ -153,7 +155,7 @@ class Drawing {
     if (std::abs(stated - unit->second) <= 1e-9 * unit->second) return;
     const std::string name = source_.outline().file.filename().string();
     throw InputError(
-        {{source_.key() + ".length_unit.stated", source_.key() + ".length_unit", unit_name(stated),
+        {{"*.length_unit.stated"_family.of(source_.key()), source_.key() + ".length_unit", unit_name(stated),
           fmt::format("must be the unit that {} states: {} ($INSUNITS, its line {})", name,
                       unit_name(unit->second), units_->line),
           fmt::format("Write length_unit: {}, or export the file in {}.", unit_name(unit->second),
@@ -195,7 +197,7 @@ class Tracer {
         i = polyline(entities, i);
       } else if (!passed_over(e.name)) {
         source_.refuse(
-            "entity", e.line,
+            "*.file.entity"_family, e.line,
             fmt::format("must consist of LINE, ARC, CIRCLE, LWPOLYLINE and POLYLINE; here stands {}", e.name),
             "Explode blocks and turn curves into arcs or polylines in the drawing program.");
       }
@@ -218,7 +220,7 @@ class Tracer {
   double value(const Group& g) const {
     const auto number = parse<double>(g.value);
     if (!number || !std::isfinite(*number)) {
-      source_.refuse("number", g.line,
+      source_.refuse("*.file.number"_family, g.line,
                      fmt::format("must have a finite number here; it has `{}`", g.value.substr(0, 40)),
                      "Export the drawing again.");
     }
@@ -228,8 +230,8 @@ class Tracer {
   double number(const Entity& e, int code) const {
     const auto g = e.find(code);
     if (!g)
-      source_.refuse("group", e.line, fmt::format("must have group {} in each {}", code, e.name),
-                     "Export the drawing again.");
+      source_.refuse("*.file.group"_family, e.line,
+                     fmt::format("must have group {} in each {}", code, e.name), "Export the drawing again.");
     return value(*g);
   }
 
@@ -246,7 +248,7 @@ class Tracer {
   double radius_of(const Entity& e) const {
     const double radius = number(e, 40);
     if (!(radius > 0.0))
-      source_.refuse("radius", e.line,
+      source_.refuse("*.file.radius"_family, e.line,
                      fmt::format("must have a positive radius; this {} has {}", e.name, radius),
                      "Delete or correct it.");
     return radius;
@@ -307,7 +309,7 @@ class Tracer {
     const int flags = whole(head, 70, 0);
     if ((flags & ~(1 | 128)) != 0) {
       source_.refuse(
-          "polyline", head.line,
+          "*.file.polyline"_family, head.line,
           fmt::format(
               "must have flat polylines of lines and arcs; this one has flags {} (3D, mesh or fitted)",
               flags),
@@ -317,7 +319,7 @@ class Tracer {
     for (++i; i < entities.size() && entities[i].name == "VERTEX"; ++i)
       corners.push_back({{number(entities[i], 10), number(entities[i], 20)}, number(entities[i], 42, 0.0)});
     if (i >= entities.size() || entities[i].name != "SEQEND")
-      source_.refuse("polyline", head.line, "must end each POLYLINE with SEQEND",
+      source_.refuse("*.file.polyline"_family, head.line, "must end each POLYLINE with SEQEND",
                      "Export the drawing again.");
     add_polyline(corners, head);
     return i;
@@ -330,7 +332,7 @@ class Tracer {
       closed = true;
     }
     if (corners.size() < 2)
-      source_.refuse("polyline", e.line,
+      source_.refuse("*.file.polyline"_family, e.line,
                      fmt::format("must have two points or more a polyline; this one has {}", corners.size()),
                      "Delete it.");
     add(along(corners, closed), e, closed);
@@ -341,7 +343,8 @@ class Tracer {
     // axes.
     const std::array<double, 3> up{number(e, 210, 0.0), number(e, 220, 0.0), number(e, 230, 1.0)};
     if (std::abs(up[0]) > 1e-9 || std::abs(up[1]) > 1e-9 || up[2] == 0.0)
-      source_.refuse("plane", e.line, fmt::format("must be drawn in the xy plane; this {} is not", e.name),
+      source_.refuse("*.file.plane"_family, e.line,
+                     fmt::format("must be drawn in the xy plane; this {} is not", e.name),
                      "Rotate the drawing into the xy plane.");
     const double mirror = up[2] < 0.0 && e.name != "LINE" ? -1.0 : 1.0;
     const double unit = source_.outline().length_unit;
@@ -402,7 +405,7 @@ std::vector<Ring> join(std::vector<Chain> chains, const Source& source) {
       }
       if (candidates == 0) {
         nearest = std::min(nearest, ring.size() > 2 ? distance(ring.front(), ring.back()) : INFINITY);
-        source.refuse("open", chains[first].line,
+        source.refuse("*.file.open"_family, chains[first].line,
                       fmt::format("must have closed borders; one ends at {}{}", in_mm(ring.back()),
                                   std::isfinite(nearest)
                                       ? fmt::format(", {:.3g} mm from the nearest other end", 1e3 * nearest)
@@ -410,7 +413,7 @@ std::vector<Ring> join(std::vector<Chain> chains, const Source& source) {
                       "Close the gap in the drawing; ends count as one within a millionth of its extent.");
       }
       if (candidates > 1) {
-        source.refuse("branch", chains[static_cast<std::size_t>(next)].line,
+        source.refuse("*.file.branch"_family, chains[static_cast<std::size_t>(next)].line,
                       fmt::format("must have borders without branches; {} lines go on from {}", candidates,
                                   in_mm(ring.back())),
                       "Delete construction lines and lines drawn twice.");
@@ -438,7 +441,7 @@ Outline sorted_rings(std::vector<Ring> rings) {
 
 std::vector<Chain> dxf_chains(const Source& source) {
   if (std::filesystem::file_size(source.outline().file) > largest_drawing)
-    source.refuse("size", 0, fmt::format("must have at most {} MB", largest_drawing >> 20),
+    source.refuse("*.file.size"_family, 0, fmt::format("must have at most {} MB", largest_drawing >> 20),
                   "Export the blank's border alone.");
   const Drawing drawing(source);
   drawing.require_unit();
@@ -453,7 +456,7 @@ std::vector<Chain> step_chains(const Source& source) {
     for (Polyline& line : step_face_curves(outline.file, outline.chord_error))
       chains.push_back({std::move(line), 0});
   } catch (const CadError& error) {
-    source.refuse("cad", 0, error.what(), error.way_out());
+    source.refuse("*.file.cad"_family, 0, error.what(), error.way_out());
   }
   return chains;
 }
@@ -464,7 +467,8 @@ Outline read_outline(const OutlineFile& outline, const std::string& key) {
   const Source source(outline, key);
   const auto demand = [&](bool holds, const char* name, double value, const char* way_out) {
     const std::string of = key + "." + name;
-    if (!holds) throw InputError({{of + ".range", of, fmt::format("{:g}", value), "must be > 0", way_out}});
+    if (!holds)
+      throw InputError({{"*.range"_family.of(of), of, fmt::format("{:g}", value), "must be > 0", way_out}});
   };
   demand(std::isfinite(outline.length_unit) && outline.length_unit > 0.0, "length_unit", outline.length_unit,
          "mm for most drawings.");
@@ -475,14 +479,15 @@ Outline read_outline(const OutlineFile& outline, const std::string& key) {
                  [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
   const bool dxf = extension == ".dxf";
   if (!dxf && extension != ".step" && extension != ".stp") {
-    throw InputError(
-        {{key + ".file.type", key + ".file", outline.file.string(), "must end with .dxf, .step or .stp",
-          "Export the blank's border as ASCII DXF, or its flat face as STEP."}});
+    throw InputError({{"*.file.type"_family.of(key), key + ".file", outline.file.string(),
+                       "must end with .dxf, .step or .stp",
+                       "Export the blank's border as ASCII DXF, or its flat face as STEP."}});
   }
   require_file(outline.file, key);
   std::vector<Chain> chains = dxf ? dxf_chains(source) : step_chains(source);
   if (chains.empty())
-    source.refuse("no_border", 0, "must hold a closed border in its ENTITIES section; it holds none",
+    source.refuse("*.file.no_border"_family, 0,
+                  "must hold a closed border in its ENTITIES section; it holds none",
                   "Draw the blank in model space.");
   Outline result = sorted_rings(join(std::move(chains), source));
   Problems problems = check(result, key);

@@ -302,33 +302,35 @@ Problems check(const TriangleMesh& mesh, const ToolBandSpec& spec, const std::st
   Problems problems;
   if (mesh.triangles.empty())
     problems.push_back(
-        {"tool.empty", key, "0 triangles", "a tool must have a surface", "Check the tool's file."});
+        {"*.empty"_family.of(key), key, "0 triangles", "must have a surface", "Check the tool's file."});
   if (!(spec.voxel > 0.0) || !std::isfinite(spec.voxel))
-    problems.push_back({"tool.voxel.range", key + ".voxel", millimetres(spec.voxel), "must satisfy voxel > 0",
+    problems.push_back({"*.range"_family.of(key + ".voxel"), key + ".voxel", millimetres(spec.voxel),
+                        "must satisfy voxel > 0",
                         "Write a twentieth of the smallest radius that touches the fabric."});
   if (!(spec.half_width > 0.0) || !std::isfinite(spec.half_width))
     problems.push_back(
-        {"tool.band.range", key + ".band", millimetres(spec.half_width), "must satisfy band half width > 0",
+        {"*.band.range"_family.of(key), key + ".band", millimetres(spec.half_width),
+         "must satisfy band half width > 0",
          "Write the tool's step plus the fabric's thickness plus the largest Newton increment."});
   if (!problems.empty()) return problems;
   for (std::size_t n = 0; n < mesh.vertices.size(); ++n)
     for (double c : mesh.vertices[n])
       if (!std::isfinite(c)) {
-        problems.push_back({"tool.mesh.finite", key, fmt::format("vertex {}", n),
-                            "every coordinate must be finite", "Check the tool's file."});
+        problems.push_back({"*.finite"_family.of(key), key, fmt::format("vertex {}", n),
+                            "must have finite coordinates", "Check the tool's file."});
         return problems;
       }
   for (const auto& t : mesh.triangles)
     for (int v : t)
       if (v < 0 || static_cast<std::size_t>(v) >= mesh.vertices.size()) {
-        problems.push_back({"tool.mesh.index", key, fmt::format("vertex {}", v),
-                            "every triangle must name vertices that exist", "Check the tool's file."});
+        problems.push_back({"*.index"_family.of(key), key, fmt::format("vertex {}", v),
+                            "must have triangles between vertices that exist", "Check the tool's file."});
         return problems;
       }
   if (spec.sides == Sides::closed) {
     const std::size_t open = open_edges(mesh);
     if (open > 0)
-      problems.push_back({"tool.mesh.open", key, fmt::format("{} open edges", open),
+      problems.push_back({"*.closed"_family.of(key), key, fmt::format("{} open edges", open),
                           "a tool's surface must be closed, or said to be a sheet with its normals outward",
                           "Close the surface, or say that the mesh is open."});
   }
@@ -336,13 +338,24 @@ Problems check(const TriangleMesh& mesh, const ToolBandSpec& spec, const std::st
   if (memory > spec.memory_limit) {
     // Memory grows at least with the square of 1 / voxel: a voxel on the safe side.
     const double voxel = spec.voxel * std::sqrt(memory / spec.memory_limit) * 1.1;
-    problems.push_back({"tool.band.memory", key + ".voxel", millimetres(spec.voxel),
-                        fmt::format("the band must fit into {:.0f} MB; this one needs about {:.0f} MB",
-                                    1e-6 * spec.memory_limit, 1e-6 * memory),
-                        fmt::format("Write a voxel of {} or more, or a narrower band.", millimetres(voxel))});
+    problems.push_back(
+        {"*.voxel.memory"_family.of(key), key + ".voxel", millimetres(spec.voxel),
+         fmt::format("must let the tool's distance field fit into {:.0f} MB; this one needs about {:.0f} MB",
+                     1e-6 * spec.memory_limit, 1e-6 * memory),
+         fmt::format("Write a voxel of {} or more, or a narrower band.", millimetres(voxel))});
   }
   return problems;
 }
+
+namespace {
+
+// What is thinner than a voxel has hardly a point inside, whose depth says nothing of the thickness.
+std::string thickness_in_words(double thickness, double voxel) {
+  return thickness > voxel ? fmt::format("{} at its thickest", millimetres(thickness))
+                           : fmt::format("less than a voxel of {} at its thickest", millimetres(voxel));
+}
+
+}  // namespace
 
 ToolBand tool_band(const TriangleMesh& mesh, const ToolBandSpec& spec, const std::string& key) {
   Problems problems = check(mesh, spec, key);
@@ -350,12 +363,11 @@ ToolBand tool_band(const TriangleMesh& mesh, const ToolBandSpec& spec, const std
   ToolBand band(level_set_from_mesh(mesh, spec.voxel, level_set_half_width(spec), spec.sides),
                 spec.half_width, spec.sides);
   if (band.depth() < spec.half_width)
-    throw InputError(
-        {{"tool.thin", key, fmt::format("{} at its thickest", millimetres(2.0 * band.depth())),
-          fmt::format("a tool must be thicker than twice its band's half width, {}: a node pressed "
-                      "through it would count as free",
-                      millimetres(2.0 * spec.half_width)),
-          "Make the tool a thicker solid, or shorten the steps that ask for this band."}});
+    throw InputError({{"*.thin"_family.of(key), key, thickness_in_words(2.0 * band.depth(), spec.voxel),
+                       fmt::format("must be thicker than twice its band's half width, {}: a node pressed "
+                                   "through it would count as free",
+                                   millimetres(2.0 * spec.half_width)),
+                       "Make the tool a thicker solid, or shorten the steps that ask for this band."}});
   return band;
 }
 

@@ -29,12 +29,12 @@ struct Source {
   const ToolFile& tool;
   const Expectation& expected;
 
-  [[noreturn]] void refuse(const char* id, int line, std::string rule, std::string way_out) const {
-    throw InputError({{fmt::format("{}.file.{}", expected.key, id), expected.key + ".file", "",
-                       std::move(rule), std::move(way_out), tool.file.string(), line}});
+  [[noreturn]] void refuse(RuleFamily id, int line, std::string rule, std::string way_out) const {
+    throw InputError({{id.of(expected.key), expected.key + ".file", "", std::move(rule), std::move(way_out),
+                       tool.file.string(), line}});
   }
   [[noreturn]] void refuse_count(std::uint64_t triangles, const char* more) const {
-    refuse("triangles", 0,
+    refuse("*.file.triangles"_family, 0,
            fmt::format("must have at most {} triangles; it has {}{}", most_tool_triangles, more, triangles),
            "Coarsen it in the program that wrote it: 200000 triangles show a tool of half a metre to 1 mm.");
   }
@@ -105,7 +105,7 @@ Place coordinates(Words& words, const Source& source, int line) {
     const std::string_view word = words.next();
     const auto value = number(word);
     if (!value) {
-      source.refuse("number", line,
+      source.refuse("*.file.number"_family, line,
                     fmt::format("must have three finite numbers here; it has `{}`", word.substr(0, 40)),
                     "The program that wrote it failed: export the tool again.");
     }
@@ -179,7 +179,7 @@ TriangleMesh read_binary_stl(const Source& source, std::uint64_t count) {
     const std::uint64_t n = std::min<std::uint64_t>(4096, count - done);
     stream.read(block.data(), static_cast<std::streamsize>(n * record));
     if (static_cast<std::uint64_t>(stream.gcount()) != n * record)
-      source.refuse("cut_off", 0, "must be readable to its end", "Copy it again.");
+      source.refuse("*.file.cut_off"_family, 0, "must be readable to its end", "Copy it again.");
     for (std::uint64_t i = 0; i < n; ++i) {
       std::array<float, 9> values;
       std::memcpy(values.data(), &block[i * record + 12], sizeof values);
@@ -187,7 +187,7 @@ TriangleMesh read_binary_stl(const Source& source, std::uint64_t count) {
       for (int k = 0; k < 3; ++k) {
         const Place p{values[3 * k], values[3 * k + 1], values[3 * k + 2]};
         if (!std::isfinite(p[0]) || !std::isfinite(p[1]) || !std::isfinite(p[2])) {
-          source.refuse("number", 0,
+          source.refuse("*.file.number"_family, 0,
                         fmt::format("must have finite numbers; triangle {} has ({}, {}, {})", done + i + 1,
                                     p[0], p[1], p[2]),
                         "The program that wrote it failed: export the tool again.");
@@ -218,7 +218,7 @@ TriangleMesh read_text_stl(const Source& source) {
       corners.push_back(collector.vertex(coordinates(words, source, line)));
     } else if (same_word(word, "endfacet")) {
       if (corners.size() != 3) {
-        source.refuse("facet", line,
+        source.refuse("*.file.facet"_family, line,
                       fmt::format("must have three corners a facet; this one has {}", corners.size()),
                       "STL holds triangles only: export the tool again.");
       }
@@ -230,13 +230,14 @@ TriangleMesh read_text_stl(const Source& source) {
       ended = false;
     } else if (!word.empty() && !same_word(word, "facet") && !same_word(word, "outer") &&
                !same_word(word, "endloop")) {
-      source.refuse("format", line,
+      source.refuse("*.file.format"_family, line,
                     fmt::format("must have a word of the STL format here; it has `{}`", word.substr(0, 40)),
                     "Words are solid, facet, outer, vertex, endloop, endfacet, endsolid.");
     }
   }
   if (!ended)
-    source.refuse("cut_off", line, "must end with endsolid", "It was cut off: copy or export it again.");
+    source.refuse("*.file.cut_off"_family, line, "must end with endsolid",
+                  "It was cut off: copy or export it again.");
   return collector.take();
 }
 
@@ -251,7 +252,7 @@ TriangleMesh read_stl(const Source& source, std::uint64_t size) {
       return read_binary_stl(source, count);
     }
     if (!looks_like_text(head)) {
-      source.refuse("cut_off", 0,
+      source.refuse("*.file.cut_off"_family, 0,
                     fmt::format("must have {} bytes for the {} triangles that its header promises; it has {}",
                                 needed, count, size),
                     "It was cut off, or is no STL file: copy or export it again.");
@@ -259,7 +260,7 @@ TriangleMesh read_stl(const Source& source, std::uint64_t size) {
   }
   Words words(std::string_view(head.data(), head.size()));
   if (!looks_like_text(head) || !same_word(words.next().substr(0, 5), "solid"))
-    source.refuse("format", 1, "must be an STL file: text that starts with solid, or binary",
+    source.refuse("*.file.format"_family, 1, "must be an STL file: text that starts with solid, or binary",
                   "Export the tool again.");
   return read_text_stl(source);
 }
@@ -302,7 +303,7 @@ std::optional<std::size_t> obj_index(std::string_view word, std::size_t count) {
 
 TriangleMesh read_obj(const Source& source) {
   if (!looks_like_text(first_bytes(source.tool.file, 1024)))
-    source.refuse("format", 1, "must be text", "It is no OBJ file: export the tool again.");
+    source.refuse("*.file.format"_family, 1, "must be text", "It is no OBJ file: export the tool again.");
   const std::size_t count = count_lines(source.tool.file, "f", most_tool_triangles);
   if (count > most_tool_triangles) source.refuse_count(most_tool_triangles, "more than ");
   Collector collector;
@@ -326,7 +327,7 @@ TriangleMesh read_obj(const Source& source) {
       for (std::string_view corner = words.next(); !corner.empty(); corner = words.next()) {
         const auto index = obj_index(corner, vertices.size());
         if (!index) {
-          source.refuse("index", line,
+          source.refuse("*.file.index"_family, line,
                         fmt::format("must name one of the {} vertices above; it names `{}`", vertices.size(),
                                     corner.substr(0, 40)),
                         "Vertices count from 1, backwards from -1, and stand before the faces.");
@@ -335,24 +336,24 @@ TriangleMesh read_obj(const Source& source) {
         corners.push_back(vertices[*index]);
       }
       if (face.size() < 3)
-        source.refuse("face", line,
+        source.refuse("*.file.face"_family, line,
                       fmt::format("must have at least three corners a face; this one has {}", face.size()),
                       "Export the tool again.");
       if (face.size() > 3 && !convex(corners))
-        source.refuse("convex", line,
+        source.refuse("*.file.convex"_family, line,
                       fmt::format("must have convex faces; this one of {} corners is not", face.size()),
                       "Export the tool as triangles.");
       for (std::size_t i = 1; i + 1 < face.size(); ++i) collector.triangle(face[0], face[i], face[i + 1]);
       if (collector.triangles() > most_tool_triangles) source.refuse_count(most_tool_triangles, "more than ");
     } else if (word == "curv" || word == "surf" || word == "cstype") {
-      source.refuse("free_form", line,
+      source.refuse("*.file.free_form"_family, line,
                     fmt::format("must consist of flat faces; `{}` is a free-form surface", word),
                     "Export the tool as triangles, or as STEP.");
     } else if (!word.empty() && word[0] != '#') {
       static const std::array<std::string_view, 12> ignored{"vn",     "vt",     "vp", "g", "o",   "s",
                                                             "mtllib", "usemtl", "l",  "p", "lod", "mg"};
       if (std::find(ignored.begin(), ignored.end(), word) == ignored.end())
-        source.refuse("format", line,
+        source.refuse("*.file.format"_family, line,
                       fmt::format("must have a word of the OBJ format here; it has `{}`", word.substr(0, 40)),
                       "Words read are v and f; normals, textures, groups and materials are skipped.");
     }
@@ -403,7 +404,8 @@ void require_size(const TriangleMesh& mesh, const ToolFile& tool, const Expectat
     way_out = fmt::format("length_unit: {} would make it {}.", unit_name(unit), extents(box, factor));
   }
   throw InputError(
-      {{expected.key + ".length_unit.size", expected.key + ".length_unit", unit_name(tool.length_unit),
+      {{"*.length_unit.size"_family.of(expected.key), expected.key + ".length_unit",
+        unit_name(tool.length_unit),
         fmt::format("must make {} as large as a tool: between 1/50 and 20 times blank and stroke ({:.4g} "
                     "mm); it is {}",
                     tool.file.filename().string(), 1e3 * needed, extents(box, 1.0)),
@@ -419,7 +421,7 @@ FileType type_of(const ToolFile& tool, const Expectation& expected) {
   if (extension == ".step" || extension == ".stp") return FileType::step;
   if (extension == ".stl") return FileType::stl;
   if (extension == ".obj") return FileType::obj;
-  throw InputError({{expected.key + ".file.type", expected.key + ".file", tool.file.string(),
+  throw InputError({{"*.file.type"_family.of(expected.key), expected.key + ".file", tool.file.string(),
                      "must end with .step, .stp, .stl or .obj",
                      "Export the tool as one of these; STEP keeps its curves."}});
 }
@@ -431,8 +433,9 @@ TriangleMesh read_step(const ToolFile& tool, const Expectation& expected) {
   } catch (const CadError& error) {
     const bool of_file = error.key() == "file";
     const std::string key = expected.key + "." + error.key();
-    throw InputError({{key + ".cad", key, of_file ? "" : fmt::format("{:g} mm", 1e3 * tool.mesh_size),
-                       error.what(), error.way_out(), of_file ? tool.file.string() : ""}});
+    throw InputError(
+        {{"*.cad"_family.of(key), key, of_file ? "" : fmt::format("{:g} mm", 1e3 * tool.mesh_size),
+          error.what(), error.way_out(), of_file ? tool.file.string() : ""}});
   }
 }
 
@@ -440,7 +443,8 @@ Problems check_numbers(const ToolFile& tool, const Expectation& expected) {
   Problems problems;
   const auto demand = [&](bool holds, const char* name, double value, const char* rule, const char* way_out) {
     const std::string key = expected.key + "." + name;
-    if (!holds) problems.push_back({key + ".range", key, fmt::format("{:g}", value), rule, way_out});
+    if (!holds)
+      problems.push_back({"*.range"_family.of(key), key, fmt::format("{:g}", value), rule, way_out});
   };
   demand(std::isfinite(tool.length_unit) && tool.length_unit > 0.0, "length_unit", tool.length_unit,
          "must be > 0", "mm for most tools.");
@@ -469,7 +473,8 @@ TriangleMesh read_tool(const ToolFile& tool, const Expectation& expected) {
     }
   }
   if (mesh.triangles.empty())
-    source.refuse("no_triangles", 0, "must hold triangles; it holds none", "Export the tool again.");
+    source.refuse("*.file.no_triangles"_family, 0, "must hold triangles; it holds none",
+                  "Export the tool again.");
   require_size(mesh, tool, expected);
   return mesh;
 }

@@ -139,7 +139,7 @@ Problems check_passage(const StampingSpec& spec, Role other, double thickness) {
                ? fmt::format("cuts {:.3g} mm into the punch", -1e3 * nearest.distance)
                : fmt::format("leaves {:.3g} mm beside the punch, less than half the fabric's {:.4g} mm",
                              1e3 * nearest.distance, 1e3 * thickness);
-  return {{fmt::format("tools.{}.passage", name_of(other)), key_of(other), "", rule,
+  return {{"tools.*.passage"_family.of(name_of(other)), key_of(other), "", rule,
            fmt::format(
                "At a stroke of {:.4g} mm near ({:.4g}, {:.4g}, {:.4g}) mm: check the files' units and places "
                "in x and y, or shorten the stroke.",
@@ -148,7 +148,7 @@ Problems check_passage(const StampingSpec& spec, Role other, double thickness) {
 
 Problems check_hold(const StampingSpec& spec) {
   if (!spec.binder.file || binder_area(spec) > 0.0) return {};
-  return {{"tools.binder.hold", "tools.binder", "", "has no flat lower face over the blank",
+  return {{"tools.binder.hold"_rule, "tools.binder", "", "has no flat lower face over the blank",
            "The binder presses by its lowest face, which must be level and reach over the blank's edge."}};
 }
 

@@ -37,7 +37,7 @@ double centre_between(const UnitCell& cell, bool first_above, bool second_above,
 FabricGeometry fabric_geometry(const WeaveSpec& weave, CellState state) {
   ParsedWeave parsed = parse_weave(weave.pattern);
   if (!parsed.fault.empty())
-    throw InputError({{"weave.pattern.unknown", "weave.pattern", weave.pattern, parsed.fault,
+    throw InputError({{"weave.pattern.unknown"_rule, "weave.pattern", weave.pattern, parsed.fault,
                        "Write plain, twill 2/2 or satin 8/3."}});
   FabricGeometry fabric;
   fabric.weave = std::move(parsed.weave);

@@ -26,7 +26,7 @@ struct Bound {
 void add_if_broken(Problems& problems, const Bound& bound) {
   if (bound.holds) return;
   const std::string space = *bound.unit ? " " : "";
-  problems.push_back({std::string(bound.key) + ".range", bound.key,
+  problems.push_back({"*.range"_family.of(bound.key), bound.key,
                       fmt::format("{:.6g}{}{}", bound.value * bound.per_unit, space, bound.unit), bound.rule,
                       bound.way_out});
 }
@@ -48,9 +48,11 @@ void check_weave_ranges(Problems& problems, const WeaveSpec& w) {
        "must satisfy 0 < tow_width < 100 mm", "Table 1 gives 4.64 mm; write 4.64 mm."},
       {"weave.gap", w.gap, "mm", 1e3, w.gap >= 0.0 && w.gap < 0.1, "must satisfy 0 <= gap < 100 mm",
        "Table 1 gives 0.75 mm; write 0.75 mm."},
-      {"weave.tow_thickness", w.tow_thickness, "mm", 1e3,
-       w.tow_thickness > 0.0 && w.tow_thickness <= w.tow_width, "must satisfy 0 < tow_thickness <= tow_width",
-       "Table 1 gives 0.75 mm; write 0.75 mm."},
+      {"weave.tow_thickness", w.tow_thickness, "mm", 1e3, w.tow_thickness > 0.0 && w.tow_thickness < 0.02,
+       "must satisfy 0 < tow_thickness < 20 mm", "Table 1 gives 0.75 mm; write 0.75 mm."},
+      {"weave.fabric_thickness", w.fabric_thickness, "mm", 1e3,
+       w.fabric_thickness > 0.0 && w.fabric_thickness < 0.04, "must satisfy 0 < fabric_thickness < 40 mm",
+       "Table 1 gives 1.5 mm; write 1.5 mm."},
       {"weave.linear_density", w.linear_density, "tex", 1e6, w.linear_density > 0.0 && w.linear_density < 0.1,
        "must satisfy 0 < linear_density < 100000 tex", "The fabric of Table 1 has 1872 tex; write 1872 tex."},
       {"weave.fibre_mass_fraction", w.fibre_mass_fraction, "%", 100.0,
@@ -113,17 +115,26 @@ void check_forming(Problems& problems, const FormingSpec& f) {
 void check_proportions(Problems& problems, const WeaveSpec& w) {
   const double slenderness = w.tow_width / w.tow_thickness;
   if (slenderness < 2.0 || slenderness > 40.0)
-    problems.push_back({"weave.tow_width.proportion", "weave.tow_width",
+    problems.push_back({"weave.tow_width.proportion"_rule,
+                        "weave.tow_width",
                         fmt::format("{:.6g} mm", 1e3 * w.tow_width),
                         fmt::format("must be 2 to 40 times the tow thickness ({:.6g} mm); it is {:.3g} times",
                                     1e3 * w.tow_thickness, slenderness),
-                        "Table 1 gives 4.64 mm and 0.75 mm."});
+                        "Table 1 gives 4.64 mm and 0.75 mm.",
+                        "",
+                        0,
+                        {"weave.tow_thickness"}});
   if (w.gap > w.tow_width)
     problems.push_back(
-        {"weave.gap.proportion", "weave.gap", fmt::format("{:.6g} mm", 1e3 * w.gap),
+        {"weave.gap.proportion"_rule,
+         "weave.gap",
+         fmt::format("{:.6g} mm", 1e3 * w.gap),
          fmt::format("must not exceed the tow width ({:.6g} mm): wider apart the tows do not make a cloth",
                      1e3 * w.tow_width),
-         "Table 1 gives 0.75 mm."});
+         "Table 1 gives 0.75 mm.",
+         "",
+         0,
+         {"weave.tow_width"}});
 }
 
 void check_thickness(Problems& problems, const WeaveSpec& w) {
@@ -131,23 +142,39 @@ void check_thickness(Problems& problems, const WeaveSpec& w) {
   const double from_tows = 2.0 * w.tow_thickness;
   if (std::abs(w.fabric_thickness - from_tows) <= 0.01 * from_tows) return;
   problems.push_back(
-      {"weave.fabric_thickness.consistent", "weave.fabric_thickness",
+      {"weave.fabric_thickness.consistent"_rule,
+       "weave.fabric_thickness",
        fmt::format("{:.6g} mm", 1e3 * w.fabric_thickness),
        fmt::format("must be the two tow thicknesses on top of each other, {:.6g} mm, within 1 %",
                    1e3 * from_tows),
        fmt::format("Write fabric_thickness: {:.6g} mm, or tow_thickness: {:.6g} mm.", 1e3 * from_tows,
-                   0.5e3 * w.fabric_thickness)});
+                   0.5e3 * w.fabric_thickness),
+       "",
+       0,
+       {"weave.tow_thickness"}});
 }
+
+// The mass of a tow's materials against the room its weave leaves them.
+const std::vector<std::string> keys_of_the_packing{"weave.pattern",
+                                                   "weave.tow_width",
+                                                   "weave.gap",
+                                                   "weave.tow_thickness",
+                                                   "weave.fabric_thickness",
+                                                   "weave.linear_density",
+                                                   "weave.fibre_mass_fraction",
+                                                   "weave.fibre_density",
+                                                   "weave.resin_density",
+                                                   "cell.state"};
 
 void check_packing(Problems& problems, const CellSpec& spec) {
   const FabricGeometry fabric = fabric_geometry(spec.weave, CellState::as_woven);
   if (fabric.tow_solid_fraction > 1.0) {
     problems.push_back(
-        {"weave.tow_thickness.holds_material", "weave.tow_thickness",
+        {"weave.tow_thickness.holds_material"_rule, "weave.tow_thickness",
          fmt::format("{:.6g} mm", 1e3 * spec.weave.tow_thickness),
          fmt::format("the tow section must hold its glass and resin, but they fill {:.3g} of it",
                      fabric.tow_solid_fraction),
-         "Give a thicker or wider tow, or a smaller linear_density."});
+         "Give a thicker or wider tow, or a smaller linear_density.", "", 0, keys_of_the_packing});
     return;
   }
   // The fullest tow decides: as woven, or squeezed flat in the consolidated sheet.
@@ -156,11 +183,12 @@ void check_packing(Problems& problems, const CellSpec& spec) {
                               : fabric_geometry(spec.weave, spec.state).crossing.fibre_fraction;
   if (fraction <= 0.75) return;
   problems.push_back(
-      {"weave.fibre_mass_fraction.packing", "weave.fibre_mass_fraction",
+      {"weave.fibre_mass_fraction.packing"_rule, "weave.fibre_mass_fraction",
        fmt::format("{:.6g} %", 100.0 * spec.weave.fibre_mass_fraction),
        fmt::format("fibres must fill at most 0.75 of the tow, but fill {:.3g}", fraction),
        "Parallel fibres reach 0.785 in a square and 0.907 in a hexagonal array: give less glass, or a "
-       "thicker or wider tow."});
+       "thicker or wider tow.",
+       "", 0, keys_of_the_packing});
 }
 
 }  // namespace
@@ -168,11 +196,14 @@ void check_packing(Problems& problems, const CellSpec& spec) {
 Problems check(const CellSpec& spec) {
   Problems problems;
   if (const std::string fault = parse_weave(spec.weave.pattern).fault; !fault.empty())
-    problems.push_back({"weave.pattern.unknown", "weave.pattern", spec.weave.pattern, fault,
+    problems.push_back({"weave.pattern.unknown"_rule, "weave.pattern", spec.weave.pattern, fault,
                         "Write plain, twill 2/2 or satin 8/3."});
+  const std::size_t before = problems.size();
   check_weave_ranges(problems, spec.weave);
-  if (problems.empty()) check_proportions(problems, spec.weave);
-  if (!positive(spec.weave.fabric_thickness) || problems.empty()) check_thickness(problems, spec.weave);
+  if (problems.size() == before) {
+    check_proportions(problems, spec.weave);
+    check_thickness(problems, spec.weave);
+  }
   // Packing needs a geometry, and so sound numbers.
   if (problems.empty()) check_packing(problems, spec);
   check_resin(problems, spec.resin);

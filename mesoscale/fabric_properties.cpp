@@ -12,29 +12,30 @@ namespace {
 constexpr const char* rebuild =
     "Run the unit-cell stage again, or mend the table in the file it was read from.";
 
-void require(Problems& problems, bool holds, const std::string& id, const std::string& key, double value,
+void require(Problems& problems, bool holds, const RuleId& id, const std::string& key, double value,
              const std::string& rule) {
   if (!holds) problems.push_back({id, key, fmt::format("{:.6g}", value), rule, rebuild});
 }
 
-void check_monotone(Problems& problems, const Curve& curve, const std::string& id, const std::string& key,
-                    const std::string& what) {
+void check_monotone(Problems& problems, const Curve& curve, const std::string& key, const std::string& what) {
   if (curve.empty()) {
-    problems.push_back({id + ".empty", key, "", "must be a table of two or more points", rebuild});
+    problems.push_back({"fabric.*.empty"_family.of(key), "fabric." + key, "",
+                        "must be a table of two or more points", rebuild});
     return;
   }
   if (const std::string fault = fault_of_monotone_table(curve.x(), curve.y(), what); !fault.empty())
-    problems.push_back({id + ".monotone", key, "", fault, rebuild});
+    problems.push_back({"fabric.*.monotone"_family.of(key), "fabric." + key, "", fault, rebuild});
 }
 
-void check_family(Problems& problems, const CurveFamily& family, const std::string& id,
-                  const std::string& key, const std::string& what) {
+void check_family(Problems& problems, const CurveFamily& family, const std::string& key,
+                  const std::string& what) {
   if (family.empty()) {
-    problems.push_back({id + ".empty", key, "", "must hold one or more tables", rebuild});
+    problems.push_back(
+        {"fabric.*.empty"_family.of(key), "fabric." + key, "", "must hold one or more tables", rebuild});
     return;
   }
   for (std::size_t k = 0; k < family.curves().size(); ++k)
-    check_monotone(problems, family.curves()[k], id, key,
+    check_monotone(problems, family.curves()[k], key,
                    fmt::format("{} at shear angle {:.4g} rad", what, family.parameter()[k]));
 }
 
@@ -45,9 +46,10 @@ double smaller_eigenvalue(const Surface::Value& at) {
 
 // Convex at every grid point and in the middle of every cell, up to rounding of the second differences.
 void check_convex(Problems& problems, const Surface& energy) {
-  const std::string id = "fabric.tension_energy", key = "fabric.tension_energy";
+  const std::string key = "fabric.tension_energy";
   if (energy.empty()) {
-    problems.push_back({id + ".empty", key, "", "must be a table of strain energy", rebuild});
+    problems.push_back(
+        {"fabric.*.empty"_family.of("tension_energy"), key, "", "must be a table of strain energy", rebuild});
     return;
   }
   double stiffest = 0.0, worst = 0.0, worst_x = 0.0, worst_y = 0.0;
@@ -64,7 +66,7 @@ void check_convex(Problems& problems, const Surface& energy) {
     }
   if (worst < -1e-9 * stiffest)
     problems.push_back(
-        {id + ".convex", key, fmt::format("curvature {:.4g} N/m", worst),
+        {"fabric.tension_energy.convex"_rule, key, fmt::format("curvature {:.4g} N/m", worst),
          fmt::format("w(e1, e2) must be convex, but is not at strains ({:.6g}, {:.6g})", worst_x, worst_y),
          "Use a finer strain grid, or a wider straightening range of the tows."});
 }
@@ -83,7 +85,7 @@ ContactArea::Value ContactArea::evaluate(double pressure, double shear_angle,
 Problems check(const FabricProperties& fabric) {
   Problems problems;
   const auto positive = [&](double value, const std::string& name) {
-    require(problems, value > 0.0 && std::isfinite(value), "fabric." + name + ".range", "fabric." + name,
+    require(problems, value > 0.0 && std::isfinite(value), "fabric.*.range"_family.of(name), "fabric." + name,
             value, "must be finite and > 0");
   };
   positive(fabric.areal_density, "areal_density");
@@ -93,32 +95,33 @@ Problems check(const FabricProperties& fabric) {
   positive(fabric.shear_rate.reference_temperature, "shear_rate.reference_temperature");
   const ShearRate& rate = fabric.shear_rate;
   require(problems, rate.consistency >= 0.0 && std::isfinite(rate.consistency),
-          "fabric.shear_rate.consistency.range", "fabric.shear_rate.consistency", rate.consistency,
-          "must be finite and >= 0");
-  require(problems, rate.index > 0.0 && rate.index <= 1.0, "fabric.shear_rate.index.range",
+          "fabric.*.range"_family.of("shear_rate.consistency"), "fabric.shear_rate.consistency",
+          rate.consistency, "must be finite and >= 0");
+  require(problems, rate.index > 0.0 && rate.index <= 1.0, "fabric.*.range"_family.of("shear_rate.index"),
           "fabric.shear_rate.index", rate.index, "must satisfy 0 < n <= 1 (convex dissipation)");
   require(problems, rate.activation_temperature >= 0.0 && std::isfinite(rate.activation_temperature),
-          "fabric.shear_rate.activation_temperature.range", "fabric.shear_rate.activation_temperature",
-          rate.activation_temperature, "must be finite and >= 0");
+          "fabric.*.range"_family.of("shear_rate.activation_temperature"),
+          "fabric.shear_rate.activation_temperature", rate.activation_temperature, "must be finite and >= 0");
 
   check_convex(problems, fabric.tension_energy);
-  check_monotone(problems, fabric.shear_stress, "fabric.shear_stress", "fabric.shear_stress", "shear stress");
+  check_monotone(problems, fabric.shear_stress, "shear_stress", "shear stress");
   for (std::size_t i = 0; i < 2; ++i) {
-    const std::string key = i == 0 ? "fabric.bending.warp" : "fabric.bending.weft";
+    const std::string key = i == 0 ? "bending.warp" : "bending.weft";
     if (fabric.bending[i].empty())
-      problems.push_back({key + ".empty", key, "", "must be a table of two or more points", rebuild});
-    for (double b : fabric.bending[i].y()) require(problems, b > 0.0, key + ".range", key, b, "must be > 0");
+      problems.push_back({"fabric.*.empty"_family.of(key), "fabric." + key, "",
+                          "must be a table of two or more points", rebuild});
+    for (double b : fabric.bending[i].y())
+      require(problems, b > 0.0, "fabric.*.range"_family.of(key), "fabric." + key, b, "must be > 0");
   }
-  check_family(problems, fabric.compaction, "fabric.compaction", "fabric.compaction", "compaction pressure");
+  check_family(problems, fabric.compaction, "compaction", "compaction pressure");
   for (const Curve& curve : fabric.compaction.curves())
     require(problems, curve.empty() || (curve.x().front() == 0.0 && curve.y().front() == 0.0),
-            "fabric.compaction.start", "fabric.compaction", curve.empty() ? 0.0 : curve.y().front(),
+            "fabric.compaction.start"_rule, "fabric.compaction", curve.empty() ? 0.0 : curve.y().front(),
             "must start at zero pressure for zero approach");
-  check_family(problems, fabric.contact.log_fraction, "fabric.contact", "fabric.contact",
-               "log area fraction");
+  check_family(problems, fabric.contact.log_fraction, "contact", "log area fraction");
   for (const Curve& curve : fabric.contact.log_fraction.curves())
-    require(problems, curve.empty() || curve.y().back() <= 0.0, "fabric.contact.range", "fabric.contact",
-            curve.empty() ? 0.0 : curve.y().back(),
+    require(problems, curve.empty() || curve.y().back() <= 0.0, "fabric.*.range"_family.of("contact"),
+            "fabric.contact", curve.empty() ? 0.0 : curve.y().back(),
             "the area fraction must not exceed 1 (its log must be <= 0)");
   return problems;
 }

@@ -293,7 +293,7 @@ LevelSet tow_level_set(const UnitCell& cell, const TowPiece& tow, double voxel, 
   const double thickness = 2.0 * half_height(cell.section, 0.0);
   if (!(voxel > 0.0) || voxel > 0.2 * thickness)
     throw InputError(
-        {{"level_set.voxel.range", "voxel", fmt::format("{} mm", 1e3 * voxel),
+        {{"level_set.voxel.range"_rule, "voxel", fmt::format("{} mm", 1e3 * voxel),
           fmt::format("must satisfy 0 < voxel <= a fifth of the tow thickness, {} mm", 0.2e3 * thickness),
           "Write 0.05 mm for the tow of Table 1."}});
   const double start = -0.5 * cell.pitch, end = start + crossings(cell, tow) * cell.pitch;

@@ -4,10 +4,12 @@
 
 #include <algorithm>
 #include <iterator>
+#include <set>
 
 #include "core/text_file.h"
 #include "core/units.h"
 #include "friction/calibrate.h"
+#include "friction/test_design.h"
 #include "macroscale/outline_file.h"
 #include "macroscale/tool_loading.h"
 #include "macroscale/tool_set.h"
@@ -257,12 +259,11 @@ Case case_of(const ReadConfig& config, const std::filesystem::path& folder) {
 
 // ---- rules between keys
 
-/// Whether a key of one of these blocks has a problem already. A rule between keys is tried only where its
-/// keys were read: with a default in the place of a bad value it would blame the wrong key.
-bool any_problem_below(const Problems& problems, const std::vector<std::string>& blocks) {
-  return std::any_of(problems.begin(), problems.end(), [&](const Problem& problem) {
+/// Whether one of these blocks, or a key below it, has no value.
+bool any_below(const std::set<std::string>& failed, const std::vector<std::string>& blocks) {
+  return std::any_of(failed.begin(), failed.end(), [&](const std::string& key) {
     return std::any_of(blocks.begin(), blocks.end(), [&](const std::string& block) {
-      return problem.key == block || problem.key.starts_with(block + ".");
+      return key == block || key.starts_with(block + ".") || block.starts_with(key + ".");
     });
   });
 }
@@ -297,7 +298,7 @@ Problems check_constants_beside_data(const Settings& settings) {
             : std::vector<std::string>{"friction.offset", "friction.slope", "friction.reference_hersey"};
   for (const std::string& path : constants) {
     if (!settings.has(path)) continue;
-    problems.push_back({path + ".beside_data", path, "",
+    problems.push_back({"*.beside_data"_family.of(path), path, "",
                         "is given beside friction.calibration.data, which fits it",
                         "Leave one of the two out."});
   }
@@ -307,9 +308,14 @@ Problems check_constants_beside_data(const Settings& settings) {
 Problems check_fitted_slope(const Settings& settings) {
   if (!slope_is_fitted(settings)) return {};
   if (settings.has("friction.calibration.data") && settings.is("friction.law", "stribeck")) return {};
-  return {{shift_path + ".slope.fitted", shift_path + ".slope", "",
+  return {{"effects.tool_temperature_shift.slope.fitted"_rule,
+           shift_path + ".slope",
+           "",
            "is to be fitted, and no friction.calibration.data of a Stribeck law is there to fit it to",
-           "Give the table, or a number: Table 4 of the paper gives -9.27e-4 1/K."}};
+           "Give the table, or a number: Table 4 of the paper gives -9.27e-4 1/K.",
+           "",
+           0,
+           {"friction.calibration.data", "friction.law"}}};
 }
 
 Problems check_rig(const FrictionSpec& spec, const Settings& settings) {
@@ -351,13 +357,33 @@ Problems check_calibration(const FrictionSpec& spec) {
   return problems;
 }
 
-Problems check_friction(const FrictionSpec& spec, const Settings& settings) {
-  Problems problems = check_constants_beside_data(settings);
-  append(problems, check_fitted_slope(settings));
-  append(problems, check_rig(spec, settings));
-  append_new(problems, check_friction_model(spec));
+Problems check_friction(const FrictionSpec& spec, const ReadConfig& config) {
+  Problems problems = check_constants_beside_data(config.settings);
+  append(problems, check_fitted_slope(config.settings));
+  append(problems, check_rig(spec, config.settings));
+  append(problems, check_friction_model(spec));
   append(problems, check_table(spec.calibration_data, true));
-  if (problems.empty()) append(problems, check_calibration(spec));
+  drop_unknowable(problems, config.failed);
+  const bool sound = problems.empty() && !any_below(config.failed, {"friction", "effects", "resin"});
+  if (sound) append(problems, check_calibration(spec));
+  return problems;
+}
+
+/// The fabric that was pulled is a cell as well, at its own keys.
+Problems check_pulled_weave(const Case& a_case) {
+  if (!a_case.cell || !a_case.friction->calibrated()) return {};
+  mesoscale::CellSpec pulled = *a_case.cell;
+  pulled.weave = a_case.friction->calibration_weave;
+  Problems problems;
+  for (const Problem& problem : mesoscale::check(pulled)) {
+    if (!problem.key.starts_with("weave.")) continue;
+    Problem moved = problem;
+    moved.id = "friction.calibration.*"_family.of(problem.id.text());
+    moved.key = "friction.calibration." + problem.key;
+    for (std::string& other : moved.others)
+      if (other.starts_with("weave.")) other = "friction.calibration." + other;
+    problems.push_back(std::move(moved));
+  }
   return problems;
 }
 
@@ -368,10 +394,25 @@ Problems check_clearance(const mesoscale::CellSpec& cell, const macroscale::Stam
   const double clearance = stamping.die.opening_radius - stamping.punch.radius;
   const double thickness = cell.weave.fabric_thickness;
   if (clearance <= 0.0 || clearance >= thickness - rounding) return {};  // <= 0: said by the room itself
-  return {{"tools.die.opening_radius.fabric", "tools.die.opening_radius", "",
+  return {{"tools.die.opening_radius.fabric"_rule,
+           "tools.die.opening_radius",
+           "",
            fmt::format("leaves {:.4g} mm beside the punch, less than the fabric's {:.4g} mm", 1e3 * clearance,
                        1e3 * thickness),
-           fmt::format("Open the die to at least {:.6g} mm.", 1e3 * (stamping.punch.radius + thickness))}};
+           fmt::format("Open the die to at least {:.6g} mm.", 1e3 * (stamping.punch.radius + thickness)),
+           "",
+           0,
+           {"tools.punch.radius", "weave.fabric_thickness"}}};
+}
+
+Problems check_design(const std::filesystem::path& file) {
+  if (file.empty()) return {};
+  try {
+    friction::read_test_design(file.lexically_normal().string());
+  } catch (const InputError& error) {
+    return error.problems();
+  }
+  return {};
 }
 
 /// Each angle names a folder of results.
@@ -379,7 +420,8 @@ Problems check_distinct(const std::vector<double>& angles, const std::string& ke
   std::vector<double> sorted = angles;
   std::sort(sorted.begin(), sorted.end());
   if (std::adjacent_find(sorted.begin(), sorted.end()) == sorted.end()) return {};
-  return {{key + ".distinct", key, "", "must not hold an angle twice", "Leave the second one out."}};
+  return {
+      {"*.distinct"_family.of(key), key, "", "must not hold an angle twice", "Leave the second one out."}};
 }
 
 /// The polygon of a blank that is given as a drawing.
@@ -394,26 +436,26 @@ Problems read_drawing(Case& a_case, const std::filesystem::path& folder) {
   try {
     a_case.stamping->blank.polygon = macroscale::read_outline(drawing, block);
   } catch (const InputError& error) {
+    a_case.stamping->blank = macroscale::BlankSpec{};  // rules of a blank that is not there would blame it
     return error.problems();
   }
   return {};
 }
 
-Problems check_between_keys(const Case& a_case, const Problems& known) {
-  const std::vector<std::string> cell_blocks{"weave", "cell", "fabric", "resin", "forming"};
-  const std::vector<std::string> friction_blocks{"friction", "effects", "resin"};
-  const std::vector<std::string> stamping_blocks{"blank", "tools", "process", "artefact"};
-  const bool cell_read = !any_problem_below(known, cell_blocks);
-  const bool stamping_read = !any_problem_below(known, stamping_blocks);
+/// Every rule that the rooms and this file know, on a case whose keys without a value hold their defaults.
+Problems check_between_keys(const Case& a_case, const ReadConfig& config) {
   Problems problems;
-  if (a_case.cell && cell_read) append(problems, mesoscale::check(*a_case.cell));
-  if (a_case.friction && !any_problem_below(known, friction_blocks)) {
-    append(problems, check_friction(*a_case.friction, a_case.settings));
+  if (a_case.cell) append(problems, mesoscale::check(*a_case.cell));
+  if (a_case.friction) {
+    append_new(problems, check_friction(*a_case.friction, config));
+    append(problems, check_pulled_weave(a_case));
   }
-  if (a_case.friction_test && a_case.friction_test->data != a_case.friction->calibration_data) {
-    append(problems, check_table(a_case.friction_test->data, false));
+  if (a_case.friction_test) {
+    if (a_case.friction_test->data != a_case.friction->calibration_data)
+      append(problems, check_table(a_case.friction_test->data, false));
+    append(problems, check_design(a_case.friction_test->design));
   }
-  if (a_case.stamping && stamping_read) {
+  if (a_case.stamping) {
     Problems of_stamping = macroscale::check(*a_case.stamping);
     if (a_case.settings.is("blank.shape", "drawing"))  // its corners are those of the drawing
       for (Problem& problem : of_stamping)
@@ -424,9 +466,8 @@ Problems check_between_keys(const Case& a_case, const Problems& known) {
     append(problems, check_distinct(a_case.orientation_study->blanks, "orientation_study.blanks"));
     append(problems, check_distinct(a_case.orientation_study->friction, "orientation_study.friction"));
   }
-  if (a_case.cell && a_case.stamping && cell_read && stamping_read) {
-    append(problems, check_clearance(*a_case.cell, *a_case.stamping));
-  }
+  if (a_case.cell && a_case.stamping) append(problems, check_clearance(*a_case.cell, *a_case.stamping));
+  drop_unknowable(problems, config.failed);
   return problems;
 }
 
@@ -465,30 +506,34 @@ std::string friction_line(const FrictionSpec& friction) {
                      friction.calibrated() ? "fitted to friction.calibration.data" : "constants as given");
 }
 
-}  // namespace
+/// A case as far as it could be read, with all that is wrong with it.
+struct Draft {
+  ReadConfig config;
+  Case a_case;
+};
 
-Case read_case_text(const std::string& text, const std::string& file, const std::filesystem::path& folder,
-                    const std::vector<std::string>& assignments) {
-  ReadConfig config = read_config(text, file, folder, assignments);
-  Case result = case_of(config, folder);
-  Problems between = read_drawing(result, folder);
-  locate(between, config);
-  append(config.problems, std::move(between));
-  between = check_between_keys(result, config.problems);
-  locate(between, config);
-  append(config.problems, std::move(between));
-  sort_by_place(config.problems, file);
-  if (!config.problems.empty()) throw InputError(config.problems);
-  note_assumptions(result);
-  return result;
+Draft draft_of(const std::string& text, const std::string& file, const std::filesystem::path& folder,
+               const std::vector<std::string>& assignments) {
+  Draft draft;
+  draft.config = read_config(text, file, folder, assignments);
+  draft.a_case = case_of(draft.config, folder);
+  Problems between = read_drawing(draft.a_case, folder);
+  append(between, check_between_keys(draft.a_case, draft.config));
+  locate(between, draft.config);
+  append(draft.config.problems, std::move(between));
+  return draft;
 }
 
-Case read_case(const std::filesystem::path& file, const std::vector<std::string>& assignments) {
-  return read_case_text(read_text_file(file), file.string(), file.parent_path(), assignments);
+Case finished(Draft draft, const std::string& file) {
+  sort_by_place(draft.config.problems, file);
+  if (!draft.config.problems.empty()) throw InputError(draft.config.problems);
+  note_assumptions(draft.a_case);
+  return std::move(draft.a_case);
 }
 
-void load_tools(Case& a_case) {
-  if (!a_case.stamping) return;
+/// Reads the tools' files; a case whose tools have problems stays without them.
+Problems tool_problems(Case& a_case) {
+  if (!a_case.stamping) return {};
   const double thickness = a_case.cell->weave.fabric_thickness;
   Problems problems;
   try {
@@ -508,7 +553,37 @@ void load_tools(Case& a_case) {
     problem.line = place->line;
     if (problem.value.empty()) problem.value = place->written;
   }
-  if (!problems.empty()) throw InputError(std::move(problems));
+  return problems;
+}
+
+/// Whether the tools' files can be read and measured: the blank gives their scale, the stroke their way.
+bool tools_can_be_looked_at(const Draft& draft) {
+  const std::vector<std::string> looked_at{"tools", "blank", "process.punch.stroke", "process.steps",
+                                           "weave.fabric_thickness"};
+  std::set<std::string> wrong = draft.config.failed;
+  for (const Problem& problem : draft.config.problems) wrong.insert(problem.key);
+  return !any_below(wrong, looked_at);
+}
+
+}  // namespace
+
+Case read_case_text(const std::string& text, const std::string& file, const std::filesystem::path& folder,
+                    const std::vector<std::string>& assignments) {
+  return finished(draft_of(text, file, folder, assignments), file);
+}
+
+Case read_case(const std::filesystem::path& file, const std::vector<std::string>& assignments) {
+  return read_case_text(read_text_file(file), file.string(), file.parent_path(), assignments);
+}
+
+void load_tools(Case& a_case) {
+  if (Problems problems = tool_problems(a_case); !problems.empty()) throw InputError(std::move(problems));
+}
+
+Case read_case_and_tools(const std::filesystem::path& file, const std::vector<std::string>& assignments) {
+  Draft draft = draft_of(read_text_file(file), file.string(), file.parent_path(), assignments);
+  if (tools_can_be_looked_at(draft)) append(draft.config.problems, tool_problems(draft.a_case));
+  return finished(std::move(draft), file.string());
 }
 
 std::vector<std::string> stage_lines(const Case& a_case) {

@@ -64,6 +64,10 @@ Case read_case_text(const std::string& text, const std::string& file, const std:
 /// @throws InputError  with every problem
 void load_tools(Case& a_case);
 
+/// Both, and the problems of both at once.
+/// @throws InputError  with every problem of the file and of its tools
+Case read_case_and_tools(const std::filesystem::path& file, const std::vector<std::string>& assignments = {});
+
 /// What `heddle run` would do, one line a stage.
 std::vector<std::string> stage_lines(const Case& a_case);
 

@@ -40,11 +40,11 @@ Problems check(const std::vector<ListedCase>& cases) {
   for (const ListedCase& listed : cases) {
     const auto letter = [](unsigned char c) { return std::isalnum(c) != 0 || c == '_' || c == '-'; };
     if (listed.id.empty() || !std::all_of(listed.id.begin(), listed.id.end(), letter))
-      problems.push_back({"cases.id.word", "cases", listed.id, "cannot name a folder",
+      problems.push_back({"cases.id.word"_rule, "cases", listed.id, "cannot name a folder",
                           "Use letters, digits, _ and - for the id of a case."});
     if (!seen.insert(listed.id).second)
       problems.push_back(
-          {"cases.id.unique", "cases", listed.id, "names two cases", "Give each case its own id."});
+          {"cases.id.unique"_rule, "cases", listed.id, "names two cases", "Give each case its own id."});
   }
   return problems;
 }
@@ -158,7 +158,7 @@ CaseRecord read_record(const std::string& text, const std::string& file) {
       record.results.emplace_back(name, value.get<double>());
     return record;
   } catch (const std::exception& error) {
-    throw InputError({{"cases.record", "", "", fmt::format("is no record of a case: {}", error.what()),
+    throw InputError({{"cases.record"_rule, "", "", fmt::format("is no record of a case: {}", error.what()),
                        "Remove it: the case is run again.", file}});
   }
 }

@@ -11,8 +11,7 @@ int check_file(const CheckOptions& options) {
     fmt::print("{}", config_reference());
     return exit_done;
   }
-  Case checked = read_case(options.file, options.assignments);
-  load_tools(checked);
+  const Case checked = read_case_and_tools(options.file, options.assignments);
   fmt::print("{}: no problems\nwould run\n", options.file.string());
   for (const std::string& line : stage_lines(checked)) fmt::print("  {}\n", line);
   if (!checked.notes.empty()) fmt::print("notes\n");

@@ -67,7 +67,7 @@ double checkpoint_interval(double usual) {
   char* end = nullptr;
   const double seconds = std::strtod(asked, &end);
   if (*end != '\0' || !(seconds >= 0.0))
-    throw InputError({{"environment.checkpoint_seconds", "HEDDLE_CHECKPOINT_SECONDS", asked,
+    throw InputError({{"environment.checkpoint_seconds"_rule, "HEDDLE_CHECKPOINT_SECONDS", asked,
                        "must be a number of seconds, 0 or more", "Leave it out for the usual 10."}});
   return seconds;
 }

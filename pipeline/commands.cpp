@@ -290,7 +290,7 @@ Case read_part(const RunOptions& options, Part part) {
   if (part == Part::weave) a_case.friction.reset(), a_case.friction_test.reset();
   const bool empty = part == Part::weave ? !a_case.cell : part == Part::friction ? !a_case.friction : false;
   if (empty)
-    throw InputError({{"case.part", part == Part::weave ? "weave" : "friction", "",
+    throw InputError({{"case.part"_rule, part == Part::weave ? "weave" : "friction", "",
                        "is missing, and this command needs it",
                        part == Part::weave ? "Add `weave:`; configs/unit_cell.yaml shows one."
                                            : "Add `friction:`; configs/friction_test.yaml shows one.",

@@ -97,7 +97,7 @@ class ValueReader {
     setting.folder = folder_;
     const std::size_t before = problems_.size();
     if (node_.kind == ConfigNode::Kind::empty) {
-      refuse("value", "has no value", example());
+      refuse("*.value"_family, "has no value", example());
     } else if (key_.type == KeyType::pair) {
       read_pair(setting);
     } else if (key_.type == KeyType::list) {
@@ -105,7 +105,7 @@ class ValueReader {
     } else if (key_.type == KeyType::rows) {
       read_rows(setting);
     } else if (node_.kind != ConfigNode::Kind::scalar) {
-      refuse("value", "must be a single value", example());
+      refuse("*.value"_family, "must be a single value", example());
     } else {
       read_scalar(setting);
     }
@@ -140,13 +140,13 @@ class ValueReader {
 
   void read_pair(Setting& setting) {
     const bool two = node_.kind == ConfigNode::Kind::list && node_.items.size() == 2;
-    if (!two) return refuse("pair", "must be a list of two values", example());
+    if (!two) return refuse("*.pair"_family, "must be a list of two values", example());
     setting.values = {read_number(node_.items[0]), read_number(node_.items[1])};
   }
 
   void read_list(Setting& setting, const ConfigNode& node) {
     if (node.kind != ConfigNode::Kind::list || node.items.empty())
-      return refuse("list", "must be a list of values", example());
+      return refuse("*.list"_family, "must be a list of values", example());
     for (const ConfigNode& item : node.items) setting.many.push_back(read_number(item));
   }
 
@@ -156,18 +156,19 @@ class ValueReader {
                       std::all_of(node_.items.begin(), node_.items.end(), [&](const ConfigNode& row) {
                         return row.kind == ConfigNode::Kind::list && row.items.size() == columns;
                       });
-    if (!fits) return refuse("rows", fmt::format("must be a list of lists of {} values", columns), example());
+    if (!fits)
+      return refuse("*.rows"_family, fmt::format("must be a list of lists of {} values", columns), example());
     for (const ConfigNode& row : node_.items) read_list(setting, row);
   }
 
   double read_number(const ConfigNode& node) {
     if (node.kind != ConfigNode::Kind::scalar) {
-      refuse("value", "must be a number", example());
+      refuse("*.value"_family, "must be a number", example());
       return 0.0;
     }
     const Reading reading = read_quantity(node.text, key_.unit);
     if (!reading.ok()) {
-      refuse("unit", reading.fault, reading.way_out);
+      refuse("*.unit"_family, reading.fault, reading.way_out);
       return 0.0;
     }
     check_range(reading.value);
@@ -177,9 +178,9 @@ class ValueReader {
   void read_integer(Setting& setting) {
     setting.text.clear();
     const Reading reading = read_quantity(node_.text, "");
-    if (!reading.ok()) return refuse("unit", reading.fault, reading.way_out);
+    if (!reading.ok()) return refuse("*.unit"_family, reading.fault, reading.way_out);
     if (reading.value != std::floor(reading.value))
-      return refuse("integer", "must be a whole number", example());
+      return refuse("*.integer"_family, "must be a whole number", example());
     check_range(reading.value);
     setting.values[0] = reading.value;
   }
@@ -187,7 +188,7 @@ class ValueReader {
   void check_range(double value) {
     const Interval interval = interval_of(key_.range, key_.unit);
     if (!interval.contains(value)) {
-      refuse("range", "must satisfy " + interval.rule(last_name(key_.path)), key_.help);
+      refuse("*.range"_family, "must satisfy " + interval.rule(last_name(key_.path)), key_.help);
     }
   }
 
@@ -197,7 +198,8 @@ class ValueReader {
              c == '-';
     });
     if (!plain || node_.text.empty()) {
-      refuse("word", "must be one word of letters, digits, _ and -", "Results go to a folder of this name.");
+      refuse("*.word"_family, "must be one word of letters, digits, _ and -",
+             "Results go to a folder of this name.");
     }
   }
 
@@ -208,14 +210,14 @@ class ValueReader {
   void check_choice() {
     if (is_choice()) return;
     const std::string near = nearest(node_.text, key_.choices);
-    refuse("choice", "must be " + join_words(key_.choices, " or "),
+    refuse("*.choice"_family, "must be " + join_words(key_.choices, " or "),
            near.empty() ? key_.help : fmt::format("The nearest is {}.", near));
   }
 
   void check_file() {
     std::error_code ignored;  // a path that cannot be looked at is as good as absent
     if (std::filesystem::is_regular_file(folder_ / node_.text, ignored)) return;
-    refuse("file", "is not a file that can be read",
+    refuse("*.file"_family, "is not a file that can be read",
            "The path is relative to the folder of the configuration file.");
   }
 
@@ -230,9 +232,9 @@ class ValueReader {
     return key_.help;
   }
 
-  void refuse(const std::string& id, const std::string& rule, const std::string& way_out) {
+  void refuse(RuleFamily id, const std::string& rule, const std::string& way_out) {
     problems_.push_back(
-        {key_.path + "." + id, key_.path, flow_text(node_), rule, way_out, node_.file, node_.line});
+        {id.of(key_.path), key_.path, flow_text(node_), rule, way_out, node_.file, node_.line});
   }
 
   const Key& key_;
@@ -241,20 +243,55 @@ class ValueReader {
   Problems& problems_;
 };
 
+/// A block that is no map stands for each key below it.
+bool is_in_or_below(const std::set<std::string>& paths, const std::string& path) {
+  return std::any_of(paths.begin(), paths.end(), [&](const std::string& failed) {
+    return path == failed || path.starts_with(failed + ".");
+  });
+}
+
+/// The keys of "friction.law=stribeck !friction.calibration.data".
+std::vector<std::string> keys_in(const std::string& conditions) {
+  std::vector<std::string> keys;
+  std::istringstream stream(conditions);
+  for (std::string term; stream >> term;) {
+    const std::size_t negated = term.front() == '!' ? 1 : 0;
+    keys.push_back(term.substr(negated, term.find('=') - negated));
+  }
+  return keys;
+}
+
+bool is_unknowable(const std::string& path, const std::set<std::string>& failed) {
+  if (is_in_or_below(failed, path)) return true;
+  const Key* key = find_key(path);
+  if (key == nullptr) return false;
+  const std::vector<std::string> deciding = keys_in(key->used_when);
+  return std::any_of(deciding.begin(), deciding.end(),
+                     [&](const std::string& one) { return is_unknowable(one, failed); });
+}
+
 /// Goes through what the user wrote, then through the schema for what is missing.
 class ConfigReader {
  public:
   ConfigReader(ReadConfig& config, const std::filesystem::path& folder) : config_(config), folder_(folder) {}
 
   void read() {
+    find_dropped();
     read_block(config_.root, "");
     find_stages();
     add_defaults();
     find_missing();
     note_unused();
+    config_.failed = std::move(failed_);
   }
 
  private:
+  /// Keys whose value the parser had to leave out are not missing as well.
+  void find_dropped() {
+    for (const Problem& problem : config_.problems)
+      if (!problem.key.empty() && config_.root.find_path(problem.key) == nullptr) failed_.insert(problem.key);
+  }
+
   void read_block(const ConfigNode& block, const std::string& path) {
     for (const ConfigNode::Entry& entry : block.entries) read_entry(entry, path);
   }
@@ -263,9 +300,10 @@ class ConfigReader {
     const std::string path = join_path(block, entry.key);
     const ConfigNode& value = entry.value;
     const int line = value.line == 0 ? 0 : entry.line;
+    if (is_effect_left_out(entry, block)) return;
     if (const Key* key = find_key(path)) {
       if (key->presence == Presence::later) {
-        report(path, "later", value, line, "comes with a later version",
+        report(path, "*.later"_family, value, line, "comes with a later version",
                key->help + " Leave it out for now.");
       } else {
         read_value(*key, value);
@@ -274,15 +312,24 @@ class ConfigReader {
       const std::string near = nearest(entry.key, names_below(block));
       // What was meant is then not missing as well.
       if (!near.empty()) failed_.insert(join_path(block, near));
-      report(path, "unknown", value, line, "is not a known key", way_out_of_unknown(block, entry.key, near));
+      report(path, "*.unknown"_family, value, line, "is not a known key",
+             way_out_of_unknown(block, entry.key, near));
     } else if (value.kind == ConfigNode::Kind::map || value.kind == ConfigNode::Kind::empty) {
       config_.settings.blocks.insert(path);
       read_block(value, path);
     } else {
       failed_.insert(path);
-      report(path, "map", value, line, "must be a map of keys and values",
-             fmt::format("Known below it: {}.", join_words(names_below(path), ", ")));
+      report(path, "*.map"_family, value, line, "must be a map of keys and values",
+             fmt::format("Known below it: {}.{}", join_words(names_below(path), ", "),
+                         block == "effects" ? " Or off, to leave the effect out." : ""));
     }
+  }
+
+  /// `ID: off` is as good as no ID at all.
+  static bool is_effect_left_out(const ConfigNode::Entry& entry, const std::string& block) {
+    const std::string path = join_path(block, entry.key);
+    return block == "effects" && (is_block(path) || find_key(path) != nullptr) &&
+           entry.value.kind == ConfigNode::Kind::scalar && entry.value.text == "off";
   }
 
   void read_value(const Key& key, const ConfigNode& node) {
@@ -345,20 +392,16 @@ class ConfigReader {
   }
 
   void find_missing() {
+    std::set<std::string> missing;
     for (const Key& key : schema()) {
       if (key.presence != Presence::required || config_.settings.has(key.path)) continue;
-      if (under_failed(key.path) || !stage_runs(key) || !is_used(key, config_.settings)) continue;
+      if (is_in_or_below(failed_, key.path) || !stage_runs(key) || !is_used(key, config_.settings)) continue;
       const ConfigNode& parent = nearest_block(key.path);
-      config_.problems.push_back({key.path + ".required", key.path, "", "is required" + because(key),
-                                  key.help, parent.file, parent.line});
+      config_.problems.push_back({"*.required"_family.of(key.path), key.path, "",
+                                  "is required" + because(key), key.help, parent.file, parent.line});
+      missing.insert(key.path);
     }
-  }
-
-  /// A block that is no map is one problem, not one for each key below it.
-  bool under_failed(const std::string& path) const {
-    return std::any_of(failed_.begin(), failed_.end(), [&](const std::string& failed) {
-      return path == failed || path.starts_with(failed + ".");
-    });
+    failed_.merge(missing);
   }
 
   std::string because(const Key& key) const {
@@ -421,9 +464,9 @@ class ConfigReader {
     }
   }
 
-  void report(const std::string& path, const std::string& id, const ConfigNode& value, int line,
+  void report(const std::string& path, RuleFamily id, const ConfigNode& value, int line,
               const std::string& rule, const std::string& way_out) {
-    config_.problems.push_back({path + "." + id, path, flow_text(value), rule, way_out, value.file, line});
+    config_.problems.push_back({id.of(path), path, flow_text(value), rule, way_out, value.file, line});
   }
 
   ReadConfig& config_;
@@ -532,8 +575,9 @@ ReadConfig read_config(const std::string& text, const std::string& file, const s
   ReadConfig config;
   config.root = std::move(parsed.root);
   config.problems = std::move(parsed.problems);
-  const bool readable = std::none_of(config.problems.begin(), config.problems.end(),
-                                     [](const Problem& problem) { return problem.id.starts_with("yaml."); });
+  const bool readable =
+      std::none_of(config.problems.begin(), config.problems.end(),
+                   [](const Problem& problem) { return problem.id.text().starts_with("yaml."); });
   int number = 0;
   for (const std::string& assignment : assignments) {
     for (Problem& problem : apply_setting(config.root, assignment, fmt::format("--set #{}", ++number))) {
@@ -553,6 +597,14 @@ void sort_by_place(Problems& problems, const std::string& file) {
   };
   std::stable_sort(problems.begin(), problems.end(),
                    [&](const Problem& a, const Problem& b) { return place(a) < place(b); });
+}
+
+void drop_unknowable(Problems& problems, const std::set<std::string>& failed) {
+  std::erase_if(problems, [&](const Problem& problem) {
+    return is_unknowable(problem.key, failed) ||
+           std::any_of(problem.others.begin(), problem.others.end(),
+                       [&](const std::string& other) { return is_unknowable(other, failed); });
+  });
 }
 
 void locate(Problems& problems, const ReadConfig& config) {

@@ -59,7 +59,15 @@ struct ReadConfig {
   Settings settings;  ///< what could be read; keys with problems are missing
   Problems problems;
   std::vector<std::string> notes;  ///< keys given that nothing uses
+  /// Keys and blocks that have no value though they need one: not given, not readable, or written wrongly
+  /// under another name.
+  std::set<std::string> failed;
 };
+
+/// Drops every problem of a rule that looks at a key without a value: with a default in its place the rule
+/// would blame a key that may be right. A rule looks at its own key, at Problem::others, and at the keys that
+/// decide whether those are used.
+void drop_unknowable(Problems& problems, const std::set<std::string>& failed);
 
 /// Reads a configuration and finds everything wrong with single keys.
 /// @param text         YAML

@@ -18,7 +18,9 @@ constexpr const char* introduction =
     "degC or K, differences of temperature in K, fractions plain or in %.\n"
     "`--set PATH=VALUE` changes a key for one run. A stage runs when one of its blocks is there: `weave`, "
     "`friction`,\n"
-    "`friction_test`, or `blank`, `tools` and `process` together.\n";
+    "`friction_test`, or `blank`, `tools` and `process` together. An effect acts when its block is there and "
+    "is\n"
+    "not `off`: `effects: {tool_temperature_shift: off}` is the same as no such line.\n";
 
 std::string top_block(const std::string& path) {
   return path.substr(0, path.find('.'));

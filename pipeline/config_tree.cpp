@@ -19,7 +19,9 @@ std::string join_path(const std::string& parent, const std::string& key) {
 /// octal integers; the events show all of it.
 class TreeBuilder : public YAML::EventHandler {
  public:
-  TreeBuilder(std::string file, Problems& problems) : file_(std::move(file)), problems_(problems) {}
+  /// @param top  path that the only key of the text stands for; "" = the keys are those of a file
+  TreeBuilder(std::string file, Problems& problems, std::string top = "")
+      : file_(std::move(file)), problems_(problems), top_(std::move(top)) {}
 
   ConfigNode root;
 
@@ -32,7 +34,7 @@ class TreeBuilder : public YAML::EventHandler {
   }
 
   void OnAlias(const YAML::Mark& mark, YAML::anchor_t) override {
-    report(mark, "alias", "is an alias, which is not read", "Write the value out where it is used.");
+    report(mark, "*.alias"_family, "is an alias, which is not read", "Write the value out where it is used.");
     drop_entry(mark);
   }
 
@@ -102,8 +104,8 @@ class TreeBuilder : public YAML::EventHandler {
   }
 
   void take_key(Open& parent, const ConfigNode& key) {
-    if (key.kind != ConfigNode::Kind::scalar) {
-      problems_.push_back({path() + ".key", path(), "", "has a key that is not a word",
+    if (key.kind != ConfigNode::Kind::scalar || key.text.empty()) {
+      problems_.push_back({"*.key"_family.of(path()), path(), "", "has a key that is not a word",
                            "Keys are plain words.", file_, key.line});
     }
     parent.key = key.text;
@@ -114,13 +116,15 @@ class TreeBuilder : public YAML::EventHandler {
   void add_entry(Open& parent, ConfigNode&& value) {
     const std::string path_of_key = path();
     parent.has_key = false;
+    if (parent.key.empty()) return;  // refused by take_key
     if (parent.key == "<<") {
-      problems_.push_back({path_of_key + ".merge", path_of_key, "", "is a merge key, which is not read",
-                           "Write the keys out.", file_, parent.key_line});
+      problems_.push_back({"*.merge"_family.of(path_of_key), path_of_key, "",
+                           "is a merge key, which is not read", "Write the keys out.", file_,
+                           parent.key_line});
       return;
     }
     if (const ConfigNode* first = parent.node.find(parent.key)) {
-      problems_.push_back({path_of_key + ".duplicate", path_of_key, value.text,
+      problems_.push_back({"*.duplicate"_family.of(path_of_key), path_of_key, value.text,
                            fmt::format("is given twice, first in line {}", first->line),
                            "Keep one of the two.", file_, parent.key_line});
       return;
@@ -143,29 +147,30 @@ class TreeBuilder : public YAML::EventHandler {
   std::string path() const {
     std::string path;
     for (const Open& open : open_) {
-      if (open.has_key) path = join_path(path, open.key);
+      if (open.has_key) path = path.empty() && !top_.empty() ? top_ : join_path(path, open.key);
     }
     return path;
   }
 
-  void report(const YAML::Mark& mark, const std::string& id, const std::string& rule,
-              const std::string& way_out) {
-    problems_.push_back({path() + "." + id, path(), "", rule, way_out, file_, mark.line + 1});
+  void report(const YAML::Mark& mark, RuleFamily id, const std::string& rule, const std::string& way_out) {
+    problems_.push_back({id.of(path()), path(), "", rule, way_out, file_, mark.line + 1});
   }
 
   void refuse_anchor(const YAML::Mark& mark, YAML::anchor_t anchor) {
     if (anchor == YAML::NullAnchor) return;
-    report(mark, "anchor", "has an anchor, which is not read", "Write the value out where it is used.");
+    report(mark, "*.anchor"_family, "has an anchor, which is not read",
+           "Write the value out where it is used.");
   }
 
   /// "?" marks a plain scalar and "!" a quoted one; any other tag was written by the user.
   void refuse_tag(const YAML::Mark& mark, const std::string& tag) {
     if (tag.empty() || tag == "?" || tag == "!") return;
-    report(mark, "tag", fmt::format("has the tag {}, which is not read", tag), "Leave the tag out.");
+    report(mark, "*.tag"_family, fmt::format("has the tag {}, which is not read", tag), "Leave the tag out.");
   }
 
   std::string file_;
   Problems& problems_;
+  std::string top_;
   std::vector<Open> open_;
 };
 
@@ -243,12 +248,10 @@ int first_line_indented_by_tab(const std::string& text) {
   return 0;
 }
 
-}  // namespace
-
-ParsedConfig parse_config(const std::string& text, const std::string& file) {
+ParsedConfig parse(const std::string& text, const std::string& file, const std::string& top) {
   ParsedConfig parsed;
   parsed.root = empty_map(file, 1);
-  TreeBuilder builder(file, parsed.problems);
+  TreeBuilder builder(file, parsed.problems, top);
   try {
     std::istringstream stream(text);
     YAML::Parser parser(stream);
@@ -256,44 +259,50 @@ ParsedConfig parse_config(const std::string& text, const std::string& file) {
     if (builder.root.kind == ConfigNode::Kind::map) {
       parsed.root = std::move(builder.root);
     } else if (builder.root.kind != ConfigNode::Kind::empty) {
-      parsed.problems.push_back({"yaml.map", "", builder.root.text, "must be a map of keys and values",
+      parsed.problems.push_back({"yaml.map"_rule, "", builder.root.text, "must be a map of keys and values",
                                  "Write lines such as \"name: my_part\".", file, builder.root.line});
     }
     Problems of_the_rest;
     TreeBuilder rest(file, of_the_rest);
     if (parser.HandleNextDocument(rest)) {
-      parsed.problems.push_back({"yaml.documents", "", "", "must hold one YAML document, and holds more",
+      parsed.problems.push_back({"yaml.documents"_rule, "", "", "must hold one YAML document, and holds more",
                                  "Remove everything after the second \"---\".", file, 0});
     }
   } catch (const YAML::Exception& error) {
     if (const int line = first_line_indented_by_tab(text); line > 0)
-      parsed.problems.push_back({"yaml.tab", "", "", "begins with a tab, and YAML is indented by blanks",
+      parsed.problems.push_back({"yaml.tab"_rule, "", "", "begins with a tab, and YAML is indented by blanks",
                                  "Replace the tabs at the beginning of lines by blanks.", file, line});
     else
-      parsed.problems.push_back({"yaml.syntax", "", "", fmt::format("cannot be read as YAML: {}", error.msg),
-                                 "Check indentation, colons and brackets near this line.", file,
-                                 error.mark.line + 1});
+      parsed.problems.push_back(
+          {"yaml.syntax"_rule, "", "", fmt::format("cannot be read as YAML: {}", error.msg),
+           "Check indentation, colons and brackets near this line.", file, error.mark.line + 1});
   }
   return parsed;
+}
+
+}  // namespace
+
+ParsedConfig parse_config(const std::string& text, const std::string& file) {
+  return parse(text, file, "");
 }
 
 Problems apply_setting(ConfigNode& root, const std::string& assignment, const std::string& place) {
   const std::size_t equals = assignment.find('=');
   const std::string path = assignment.substr(0, equals);
   if (equals == std::string::npos || !is_plain_path(path)) {
-    return {{"set.syntax", "--set", assignment, "must have the form PATH=VALUE with a dotted path",
+    return {{"set.syntax"_rule, "--set", assignment, "must have the form PATH=VALUE with a dotted path",
              "For instance --set weave.gap='1.5 mm'.", place, 0}};
   }
 
-  ParsedConfig parsed = parse_config("value: " + assignment.substr(equals + 1), place);
+  ParsedConfig parsed = parse("value: " + assignment.substr(equals + 1), place, path);
   for (Problem& problem : parsed.problems) {
     problem.line = 0;
-    problem.key = path;
+    if (problem.key.empty()) problem.key = path;
   }
   if (!parsed.problems.empty()) return parsed.problems;
   if (parsed.root.entries.size() != 1) {
-    return {{"set.syntax", path, assignment, "must give one value", "Write a map in braces: {a: 1, b: 2}.",
-             place, 0}};
+    return {{"set.syntax"_rule, path, assignment, "must give one value",
+             "Write a map in braces: {a: 1, b: 2}.", place, 0}};
   }
   ConfigNode value = std::move(parsed.root.entries.front().value);
   move_to_place(value, place);
@@ -302,7 +311,7 @@ Problems apply_setting(ConfigNode& root, const std::string& assignment, const st
   for (const std::string& key : split_path(path)) {
     if (node->kind == ConfigNode::Kind::empty) *node = empty_map(place, 0);
     if (node->kind != ConfigNode::Kind::map) {
-      return {{path + ".set", path, assignment,
+      return {{"*.set"_family.of(path), path, assignment.substr(equals + 1),
                fmt::format("cannot be reached: a value stands before \"{}\"", key),
                "Set the value above it to a map first.", place, 0}};
     }

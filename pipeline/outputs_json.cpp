@@ -160,16 +160,16 @@ class Reader {
  public:
   Reader(std::string file, Problems& problems) : file_(std::move(file)), problems_(problems) {}
 
-  void report(const std::string& key, const std::string& value, const std::string& rule) {
+  void report(RuleFamily id, const std::string& key, const std::string& value, const std::string& rule) {
     problems_.push_back(
-        {"fabric." + key, key, value, rule, "Write the file anew with `heddle weave CASE.yaml`.", file_, 0});
+        {id.of(key), key, value, rule, "Write the file anew with `heddle weave CASE.yaml`.", file_, 0});
   }
 
   /// The node under `key`, or nullptr with a problem noted.
   const Json* member(const Json& parent, const std::string& place, const std::string& key) {
     const auto found = parent.is_object() ? parent.find(key) : parent.end();
     if (parent.is_object() && found != parent.end()) return &*found;
-    report(path(place, key), "", "is missing");
+    report("fabric.json.*.missing"_family, path(place, key), "", "is missing");
     return nullptr;
   }
 
@@ -180,7 +180,8 @@ class Reader {
     try {
       out = node->get<T>();
     } catch (const Json::exception&) {
-      report(path(place, key), shortened(node->dump()), fmt::format("must be {}", kind_of(out)));
+      report("fabric.json.*.type"_family, path(place, key), shortened(node->dump()),
+             fmt::format("must be {}", kind_of(out)));
     }
   }
 
@@ -188,7 +189,8 @@ class Reader {
     if (!parent.is_object()) return;
     for (const auto& [key, value] : parent.items()) {
       if (!known.contains(key))
-        report(path(place, key), shortened(value.dump()), "is not a key of this file");
+        report("fabric.json.*.unknown"_family, path(place, key), shortened(value.dump()),
+               "is not a key of this file");
     }
   }
 
@@ -221,7 +223,7 @@ void construct(Reader& reader, const std::string& place, std::size_t before, con
   try {
     make();
   } catch (const std::invalid_argument& fault) {
-    reader.report(place, "", fault.what());
+    reader.report("fabric.json.*.table"_family, place, "", fault.what());
   }
 }
 
@@ -244,7 +246,9 @@ CurveFamily read_family(Reader& reader, const Json& node, const std::string& pla
   reader.only(node, place, {"shear_angle_rad", "curves"});
   std::vector<Curve> curves;
   if (const Json* list = reader.member(node, place, "curves")) {
-    if (!list->is_array()) reader.report(Reader::path(place, "curves"), "", "must be a list of tables");
+    if (!list->is_array())
+      reader.report("fabric.json.*.type"_family, Reader::path(place, "curves"), "",
+                    "must be a list of tables");
     std::size_t i = 0;
     for (const Json& entry : *list) {
       curves.push_back(read_curve(reader, entry, fmt::format("{}.curves[{}]", place, i++), keys));
@@ -389,7 +393,7 @@ mesoscale::FabricProperties read_fabric_json(std::string_view text, const std::s
     Reader reader(file, problems);
     fabric = read_fabric(reader, root);
   } catch (const Json::exception& error) {
-    problems.push_back({"fabric.json.syntax", "", "", fmt::format("must be JSON; {}", error.what()),
+    problems.push_back({"fabric.json.syntax"_rule, "", "", fmt::format("must be JSON; {}", error.what()),
                         "Write the file anew with `heddle weave CASE.yaml`.", file, 0});
   }
   if (!problems.empty()) throw InputError(std::move(problems));

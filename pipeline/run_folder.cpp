@@ -30,16 +30,16 @@ std::string case_in(const fs::path& folder) {
 
 void demand_own_folder(const Case& a_case, const fs::path& folder) {
   if (fs::exists(folder) && !fs::is_directory(folder))
-    throw InputError({{"output.folder.file", "-o", folder.string(),
+    throw InputError({{"output.folder.file"_rule, "-o", folder.string(),
                        "must be a folder, but a file has this name", "Choose another folder with -o."}});
   if (!fs::exists(folder) || fs::is_empty(folder)) return;
   const std::string held = case_in(folder);
   if (held == a_case.name && !a_case.stamping && fs::exists(folder / "macroscale"))
-    throw InputError({{"output.folder.stamped", "-o", folder.string(),
+    throw InputError({{"output.folder.stamped"_rule, "-o", folder.string(),
                        "holds a stamped part, which this command would replace",
                        "Choose another folder with -o, or write over it with --force."}});
   if (held == a_case.name) return;
-  throw InputError({{"output.folder.other", "-o", folder.string(),
+  throw InputError({{"output.folder.other"_rule, "-o", folder.string(),
                      held.empty() ? "holds files that are not a run of heddle"
                                   : fmt::format("holds another case: {}", held),
                      "Choose another folder with -o, or write over it with --force."}});
@@ -71,7 +71,7 @@ RunFolder::RunFolder(const Case& a_case, fs::path folder, bool force, Entry entr
   try {
     fs::create_directories(path_);
   } catch (const fs::filesystem_error& error) {
-    throw InputError({{"output.folder.create", "-o", path_.string(),
+    throw InputError({{"output.folder.create"_rule, "-o", path_.string(),
                        "cannot be created: " + error.code().message(), "Choose another folder with -o."}});
   }
   // The manifest says that a run is complete: it goes first and comes last.

@@ -146,7 +146,7 @@ friction::AreaFunction area_function(const FrictionSpec& spec, const mesoscale::
 FrictionStage run_friction_stage(const Case& a_case, const mesoscale::FabricProperties* fabric) {
   const FrictionSpec& spec = *a_case.friction;
   if (spec.contact_pressure == macroscale::ContactPressure::real && !fabric)
-    throw InputError({{"friction.contact_pressure.weave", "friction.contact_pressure", "real",
+    throw InputError({{"friction.contact_pressure.weave"_rule, "friction.contact_pressure", "real",
                        "needs a weave: the contact area comes from it",
                        "Add `weave:`, or write `contact_pressure: nominal`."}});
   const friction::AreaFunction area = area_function(spec, fabric);

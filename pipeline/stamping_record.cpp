@@ -66,12 +66,12 @@ std::optional<StampingRecord> checkpoint_in(const std::filesystem::path& folder,
     const std::string bytes = read_file(path);
     record = read_stamping_record(Hdf5Reader(bytes));
   } catch (const Hdf5Error& error) {
-    throw InputError({{"run.resume.damaged", "--resume", path.string(), error.what(), start_again}});
+    throw InputError({{"run.resume.damaged"_rule, "--resume", path.string(), error.what(), start_again}});
   }
   const std::vector<std::string> changes = differences(record.inputs, inputs.text());
   if (!changes.empty())
     throw InputError(
-        {{"run.resume.changed", "--resume", folder.string(),
+        {{"run.resume.changed"_rule, "--resume", folder.string(),
           fmt::format("was run with other inputs: {}", fmt::join(changes, "; ")), way_back(changes)}});
   return record;
 }

@@ -248,7 +248,7 @@ TEST_CASE("calibration refuses what it cannot answer", "[friction][wrong input]"
 
   Model bad_film = start;
   bad_film.film.index = 2.0;
-  CHECK(problem_of(bad_film, rows) == "friction.film.index.range");
+  CHECK(problem_of(bad_film, rows) == "resin.power_index.range");
 
   CHECK_THROWS_AS(calibrate(start, rows, {.plate_area = 0.0}), InputError);
 }

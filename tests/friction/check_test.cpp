@@ -58,53 +58,53 @@ TEST_CASE("a sound model, rig and row have no problems", "[friction][wrong input
 
 TEST_CASE("each rule of the model is met by one bad value", "[friction][wrong input]") {
   const std::vector<Fault<Model>> faults{
-      {"friction.film.consistency.range", "resin.consistency", [](Model& m) { m.film.consistency = 0.0; }},
-      {"friction.film.consistency.range", "resin.consistency",
-       [](Model& m) { m.film.consistency = not_a_number; }},
-      {"friction.film.index.range", "resin.power_index", [](Model& m) { m.film.index = 1.7; }},
-      {"friction.film.index.range", "resin.power_index", [](Model& m) { m.film.index = 0.0; }},
-      {"friction.film.thickness.range", "resin.film_thickness", [](Model& m) { m.film.thickness = 0.07; }},
-      {"friction.film.thickness.range", "resin.film_thickness", [](Model& m) { m.film.thickness = -7e-5; }},
-      {"friction.film.activation_energy.range", "resin.activation_energy",
+      {"resin.consistency.range", "resin.consistency", [](Model& m) { m.film.consistency = 0.0; }},
+      {"resin.consistency.range", "resin.consistency", [](Model& m) { m.film.consistency = not_a_number; }},
+      {"resin.power_index.range", "resin.power_index", [](Model& m) { m.film.index = 1.7; }},
+      {"resin.power_index.range", "resin.power_index", [](Model& m) { m.film.index = 0.0; }},
+      {"resin.film_thickness.range", "resin.film_thickness", [](Model& m) { m.film.thickness = 0.07; }},
+      {"resin.film_thickness.range", "resin.film_thickness", [](Model& m) { m.film.thickness = -7e-5; }},
+      {"resin.activation_energy.range", "resin.activation_energy",
        [](Model& m) { m.film.activation_energy = -1.0; }},
-      {"friction.film.activation_energy.range", "resin.activation_energy",
+      {"resin.activation_energy.range", "resin.activation_energy",
        [](Model& m) { m.film.activation_energy = 42e6; }},
-      {"friction.film.reference_temperature.range", "resin.reference_temperature",
+      {"resin.reference_temperature.range", "resin.reference_temperature",
        [](Model& m) { m.film.reference_temperature = 0.0; }},
-      {"friction.film.rate_floor.range", "resin.rate_floor", [](Model& m) { m.film.rate_floor = 0.0; }},
-      {"friction.coulomb.coefficient.range", "friction.coefficient", [](Model& m) { m.law = Coulomb{-0.1}; }},
-      {"friction.coulomb.coefficient.range", "friction.coefficient", [](Model& m) { m.law = Coulomb{30.0}; }},
-      {"friction.power.scale.range", "friction.scale",
+      {"resin.rate_floor.range", "resin.rate_floor", [](Model& m) { m.film.rate_floor = 0.0; }},
+      {"friction.coefficient.range", "friction.coefficient", [](Model& m) { m.law = Coulomb{-0.1}; }},
+      {"friction.coefficient.range", "friction.coefficient", [](Model& m) { m.law = Coulomb{30.0}; }},
+      {"friction.scale.range", "friction.scale",
        [](Model& m) {
          m.law = HerseyPower{0.0, 0.1};
        }},
-      {"friction.power.exponent.range", "friction.exponent",
+      {"friction.exponent.range", "friction.exponent",
        [](Model& m) {
          m.law = HerseyPower{0.3, 1.0};
        }},
-      {"friction.power.exponent.range", "friction.exponent",
+      {"friction.exponent.range", "friction.exponent",
        [](Model& m) {
          m.law = HerseyPower{0.3, not_a_number};
        }},
-      {"friction.linear.reference.range", "friction.reference_hersey",
+      {"friction.reference_hersey.range", "friction.reference_hersey",
        [](Model& m) {
          m.law = HerseyLinear{0.24, 0.04, -1.0};
        }},
-      {"friction.linear.positive", "friction.offset",
+      {"friction.offset.positive", "friction.offset",
        [](Model& m) {
          m.law = HerseyLinear{-0.1, 0.04, 0.36};
        }},
-      {"friction.linear.positive", "friction.offset",
+      {"friction.offset.positive", "friction.offset",
        [](Model& m) {
          m.law = HerseyLinear{0.24, -0.2, 0.36};
        }},
-      {"friction.box.order", "friction.calibration", [](Model& m) { m.box.pressure_low = 1e301; }},
-      {"friction.box.order", "friction.calibration", [](Model& m) { m.box.speed_low = -1.0; }},
-      {"friction.tool_temperature_shift.slope.range", "effects.tool_temperature_shift.slope",
+      {"friction.calibration.box_order", "friction.calibration",
+       [](Model& m) { m.box.pressure_low = 1e301; }},
+      {"friction.calibration.box_order", "friction.calibration", [](Model& m) { m.box.speed_low = -1.0; }},
+      {"effects.tool_temperature_shift.slope.range", "effects.tool_temperature_shift.slope",
        [](Model& m) { m.effects.tool_temperature_shift->slope = -0.927; }},
-      {"friction.tool_temperature_shift.slope.range", "effects.tool_temperature_shift.slope",
+      {"effects.tool_temperature_shift.slope.range", "effects.tool_temperature_shift.slope",
        [](Model& m) { m.effects.tool_temperature_shift->slope = not_a_number; }},
-      {"friction.tool_temperature_shift.reference.range", "effects.tool_temperature_shift.reference",
+      {"effects.tool_temperature_shift.reference.range", "effects.tool_temperature_shift.reference",
        [](Model& m) { m.effects.tool_temperature_shift->reference = 0.0; }},
   };
   for (const auto& [id, key, break_it] : faults) {
@@ -129,7 +129,8 @@ TEST_CASE("a film that the law does not use is not looked at", "[friction][wrong
 }
 
 TEST_CASE("each rule of the rig is met by one bad value", "[friction][wrong input]") {
-  const std::string area = "friction.rig.plate_area.range", band = "friction.rig.plate_area_band.order";
+  const std::string area = "friction.calibration.plate_area.range",
+                    band = "friction.calibration.plate_area_band.order";
   const std::string area_key = "friction.calibration.plate_area",
                     band_key = "friction.calibration.plate_area_band";
   check_one_problem(check(FrictionRig{.plate_area = 0.01, .plate_area_band = {0.02, 0.005}}), band, band_key);

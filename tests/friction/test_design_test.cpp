@@ -35,13 +35,13 @@ TEST_CASE("a design with faults is refused with all of them and their lines",
     CHECK(has("friction.design.parameter", 4));
     CHECK(has("csv.cells", 5));
   }
-  const auto first_id = [](const char* text) {
+  const auto first_id = [](const char* text) -> std::string {
     try {
       parse_test_design(text, "design.csv");
     } catch (const heddle::InputError& error) {
       return error.problems().front().id;
     }
-    return std::string("accepted");
+    return "accepted";
   };
   CHECK(first_id("velocity,mm/s,16.6,1.66\n") == "friction.design.header");
   CHECK(first_id("parameter,unit,baseline,additional\nvelocity,mm/s,16.6,1.66\n") ==

@@ -89,7 +89,7 @@ TEST_CASE("DXF: each entity gives the border it draws", "[macroscale][outline_fi
 TEST_CASE("DXF files that are no outline are refused with the line", "[macroscale][outline_file]") {
   const Folder folder;
   const auto write = [&](const std::string& entities) { return folder.write("a.dxf", dxf(entities)); };
-  CHECK(names(refused(folder / "missing.dxf"), "blank.outline.missing", {"no such file"}));
+  CHECK(names(refused(folder / "missing.dxf"), "blank.outline.file.missing", {"no such file"}));
   CHECK(names(refused(folder.write("a.txt", "x")), "blank.outline.file.type", {".dxf, .step or .stp"}));
   CHECK(names(refused(folder.write("b.dxf", "AutoCAD Binary DXF\r\n")), "blank.outline.file.binary",
               {"ASCII"}));
@@ -113,6 +113,11 @@ TEST_CASE("DXF files that are no outline are refused with the line", "[macroscal
               {"the outer border and hole 1"}));
   CHECK(names(refused(write(square + " 0 CIRCLE 10 50 20 50 40 0")), "blank.outline.file.radius",
               {"positive"}));
+  CHECK(names(refused(write("0 CIRCLE 10 100 20 50")), "blank.outline.file.group",
+              {"group 40 in each CIRCLE"}));
+  CHECK(names(refused(write("0 POLYLINE 70 8 0 SEQEND")), "blank.outline.file.polyline", {"flags 8"}));
+  CHECK(names(refused(write("0 CIRCLE 10 0 20 0 40 10 210 1 230 0")), "blank.outline.file.plane",
+              {"this CIRCLE is not"}));
 
   const Problems spline = refused(write(square + " 0 SPLINE 70 8"));
   REQUIRE(spline.size() == 1);

@@ -78,6 +78,8 @@ TEST_CASE("each fault of an outline is named with its place", "[macroscale][outl
     return Ring{{x, y}, {x + s, y}, {x + s, y + s}, {x, y + s}};
   };
   CHECK(names(found({{{0, 0}, {1, 0}}, {}}), "blank.outline.points", {"the outer border has 2"}));
+  CHECK(names(found({Ring(100001, {0, 0}), {}}), "blank.outline.size", {"at most 100000 points"}));
+  CHECK(names(refusal([] { circle(0.0); }), "blank.outline.circle.range", {"positive radius"}));
   CHECK(names(found({{{0, 0}, {1, 0}, {std::nan(""), 1}}, {}}), "blank.outline.finite", {"point 3"}));
   CHECK(names(found({{{0, 0}, {1, 0}, {1, 0}, {0, 1}}, {}}), "blank.outline.repeated_point",
               {"point 2", "(1000, 0) mm"}));

@@ -205,15 +205,20 @@ TEST_CASE("the unit a STEP file states must be the one the case states", "[macro
 
   file = tool(folder.write("none.step",
                            replaced(punch, "GLOBAL_UNIT_ASSIGNED_CONTEXT", "GLOBAL_UNIT_FORGOTTEN_CONTEXT")));
-  CHECK(
-      names(refusal([&] { read_tool(file, expected); }), "tools.punch.unit", {"must state its length unit"}));
+  CHECK(names(refusal([&] { read_tool(file, expected); }), "tools.punch.file.unit",
+              {"must state its length unit"}));
 }
 
 TEST_CASE("STEP files that cannot be meshed are refused with the reason", "[macroscale][step]") {
   const Folder folder;
   const std::string punch = contents(shipped / "punch.step");
   const auto cut = folder.write("cut.step", punch.substr(0, punch.size() / 2));
-  CHECK(names(refusal([&] { read_tool(tool(cut), expected); }), "tools.punch.cut_off", {"END-ISO-10303-21"}));
+  CHECK(names(refusal([&] { read_tool(tool(cut), expected); }), "tools.punch.file.cut_off",
+              {"END-ISO-10303-21"}));
+  const auto large = folder.write("large.step", punch);
+  std::filesystem::resize_file(large, 65u << 20);
+  CHECK(names(refusal([&] { read_tool(tool(large), expected); }), "tools.punch.file.size",
+              {"at most 64 MB; it has 65"}));
   const auto coarse = tool(shipped / "punch.step", 0.2);
   CHECK(names(refusal([&] { read_tool(coarse, expected); }), "tools.punch.mesh_size.cad",
               {"half the tool's largest extent (170 mm)"}));

@@ -400,20 +400,20 @@ TEST_CASE("a band too large, too narrow or for a tool too thin is refused with t
   };
   const TriangleMesh plate = test::box_mesh({-50e-3, -50e-3, -8e-3}, {50e-3, 50e-3, 0.0});
   CHECK(problem(plate, {.voxel = 1e-3, .half_width = 3e-3}) == "");
-  CHECK(problem(plate, {.voxel = 0.01e-3, .half_width = 3e-3}) == "tool.band.memory");
-  CHECK(problem(plate, {.voxel = 1e-3, .half_width = 5e-3}) == "tool.thin");
-  CHECK(problem(plate, {.voxel = 0.0}) == "tool.voxel.range");
-  CHECK(problem(plate, {.half_width = -1.0}) == "tool.band.range");
-  CHECK(problem({}, {}) == "tool.empty");
+  CHECK(problem(plate, {.voxel = 0.01e-3, .half_width = 3e-3}) == "tools.die.voxel.memory");
+  CHECK(problem(plate, {.voxel = 1e-3, .half_width = 5e-3}) == "tools.die.thin");
+  CHECK(problem(plate, {.voxel = 0.0}) == "tools.die.voxel.range");
+  CHECK(problem(plate, {.half_width = -1.0}) == "tools.die.band.range");
+  CHECK(problem({}, {}) == "tools.die.empty");
   TriangleMesh open = plate;
   open.triangles.pop_back();
-  CHECK(problem(open, {.voxel = 1e-3, .half_width = 3e-3}) == "tool.mesh.open");
+  CHECK(problem(open, {.voxel = 1e-3, .half_width = 3e-3}) == "tools.die.closed");
   TriangleMesh wild = plate;
   wild.vertices[3][1] = infinity;
-  CHECK(problem(wild, {}) == "tool.mesh.finite");
+  CHECK(problem(wild, {}) == "tools.die.finite");
   wild = plate;
   wild.triangles[3][1] = 8;
-  CHECK(problem(wild, {}) == "tool.mesh.index");
+  CHECK(problem(wild, {}) == "tools.die.index");
   CHECK_THROWS_AS(ToolBand(level_set_from_mesh(plate, 1e-3, 3.0), 2e-3), std::invalid_argument);
   CHECK(required_half_width(0.6e-3, 1.5e-3, 1e-3) == Approx(3.1e-3));
 }

@@ -1,3 +1,5 @@
+#include <unistd.h>
+
 #include <catch2/catch.hpp>
 #include <chrono>
 #include <cstdio>
@@ -81,15 +83,15 @@ TEST_CASE("files that are no tools are refused with the reason", "[macroscale][t
     return bytes;
   }();
   for (const std::string type : {"stl", "obj", "step"}) {
-    require_refused(tool(folder / ("missing." + type)), "missing", {"no such file"});
-    require_refused(tool(folder.write("empty." + type, "")), "empty", {"0 bytes"});
+    require_refused(tool(folder / ("missing." + type)), "file.missing", {"no such file"});
+    require_refused(tool(folder.write("empty." + type, "")), "file.empty", {"0 bytes"});
     std::filesystem::create_directories(folder / ("folder." + type));
-    require_refused(tool(folder / ("folder." + type)), "folder", {"must be a file"});
+    require_refused(tool(folder / ("folder." + type)), "file.folder", {"must be a file"});
   }
   require_refused(tool(folder.write("a.iges", "x")), "file.type", {".step, .stp, .stl or .obj"});
   require_refused(tool(folder.write("noise.stl", noise)), "file.cut_off", {"is no STL file"});
   require_refused(tool(folder.write("noise.obj", noise)), "file.format", {"OBJ"});
-  require_refused(tool(folder.write("noise.step", noise)), "format", {"ISO-10303-21"});
+  require_refused(tool(folder.write("noise.step", noise)), "file.format", {"ISO-10303-21"});
   require_refused(tool(folder.write("words.stl", "solid words\nthese are words\n")), "file.format",
                   {"`these`"});
   require_refused(tool(folder.write("words.obj", "these are words\n")), "file.format", {"`these`"});
@@ -104,6 +106,21 @@ TEST_CASE("files that are no tools are refused with the reason", "[macroscale][t
   const float infinity = INFINITY;
   std::memcpy(&infinite[84 + 50 + 12], &infinity, sizeof infinity);
   require_refused(tool(folder.write("inf.stl", infinite)), "file.number", {"triangle 2"});
+}
+
+TEST_CASE("a tool file that only others may read is refused", "[macroscale][tool_file]") {
+  const Folder folder;
+  const auto file = folder.write("a.stl", "solid a\nendsolid a\n");
+  std::filesystem::permissions(file, std::filesystem::perms::none);
+  const uid_t who = geteuid();
+  // root may read everything: it tries as nobody, who must be let into the folder
+  if (who == 0) {
+    std::filesystem::permissions(file.parent_path(), std::filesystem::perms::all);
+    REQUIRE(seteuid(65534) == 0);
+  }
+  const Problems problems = refusal([&] { load_tool(tool(file), expected); });
+  if (who == 0) REQUIRE(seteuid(0) == 0);
+  CHECK(names(problems, "tools.punch.file.unreadable", {"must be readable"}));
 }
 
 TEST_CASE("faulty meshes are refused, and mended where asked", "[macroscale][tool_file]") {

@@ -97,7 +97,13 @@ TEST_CASE("a record that cannot be read counts as none, and says so", "[pipeline
   const auto again = pipeline::run_case_list(cases, options);
   CHECK(again[0].status == CaseStatus::done);
   CHECK_FALSE(again[0].run_before);
-  CHECK_THROWS_WITH(pipeline::read_record("{", "x.json"), Catch::Contains("is no record of a case"));
+  try {
+    pipeline::read_record("{", "x.json");
+    FAIL("was accepted");
+  } catch (const InputError& error) {
+    CHECK(error.problems().front().id == "cases.record");
+    CHECK_THAT(error.what(), Catch::Contains("is no record of a case"));
+  }
 }
 
 TEST_CASE("a list that is interrupted goes on in the middle of the case it was at", "[pipeline][cases]") {
@@ -144,7 +150,10 @@ TEST_CASE("ids of a list that repeat or cannot name a folder are refused, all at
     pipeline::run_case_list(cases, {.folder = scratch / "list"});
     FAIL("nothing was refused");
   } catch (const InputError& error) {
-    CHECK(error.problems().size() == 3);
+    REQUIRE(error.problems().size() == 3);
+    CHECK(error.problems()[0].id == "cases.id.unique");
+    CHECK(error.problems()[1].id == "cases.id.word");
+    CHECK(error.problems()[2].id == "cases.id.word");
   }
   CHECK_FALSE(fs::exists(scratch / "list"));
 }

@@ -1,6 +1,9 @@
 #include "pipeline/command_line.h"
 
 #include <catch2/catch.hpp>
+#include <cstdlib>
+
+#include "core/problem.h"
 
 using namespace heddle::pipeline;
 
@@ -68,6 +71,20 @@ TEST_CASE("each subcommand reaches its function", "[pipeline][command_line]") {
   CHECK(record.check.file == "a.yaml");
   CHECK(call({"check", "--reference"}, record) == 8);
   CHECK(record.check.reference);
+}
+
+TEST_CASE("a faulty interval in the environment is refused", "[pipeline][command_line]") {
+  Record record;
+  REQUIRE(setenv("HEDDLE_CHECKPOINT_SECONDS", "soon", 1) == 0);
+  std::string broken;
+  try {
+    call({"run", "a.yaml"}, record);
+  } catch (const heddle::InputError& error) {
+    broken = error.problems().front().id;
+  }
+  unsetenv("HEDDLE_CHECKPOINT_SECONDS");
+  CHECK(broken == "environment.checkpoint_seconds");
+  CHECK(record.called.empty());
 }
 
 TEST_CASE("a faulty command line is bad input and calls nothing", "[pipeline][command_line]") {

@@ -1,11 +1,15 @@
 #include "pipeline/config_reader.h"
 
+#include <algorithm>
 #include <catch2/catch.hpp>
+#include <cmath>
 #include <cstring>
 #include <filesystem>
 #include <fstream>
+#include <set>
 #include <sstream>
 
+#include "core/units.h"
 #include "pipeline/case.h"
 #include "pipeline/config_reference.h"
 
@@ -244,9 +248,106 @@ TEST_CASE("a problem set on the command line is named by its number", "[pipeline
                                                                   {"--set #3", "weave.gpa.unknown"},
                                                                   {"--set #4", "set.syntax"},
                                                                   {"--set #5", "name.first.set"},
-                                                                  {"--set #6", "value.power_index.anchor"},
+                                                                  {"--set #6", "resin.power_index.anchor"},
                                                                   {"--set #7", "set.syntax"},
                                                                   {"--set #8", "yaml.syntax"}});
+}
+
+TEST_CASE("an effect that is written as off is as good as absent", "[pipeline][config][effect]") {
+  const std::string without = pipeline::resolved_yaml(read_case_text(small_stamping, "x.yaml", "").settings);
+  const auto resolved = [&](const std::string& effects, const std::vector<std::string>& assignments = {}) {
+    const Case read =
+        read_case_text(small_stamping + "effects: " + effects + "\n", "x.yaml", "", assignments);
+    CHECK(read.notes.empty());
+    CHECK_FALSE(read.friction->model.effects.tool_temperature_shift);
+    return pipeline::resolved_yaml(read.settings);
+  };
+  CHECK(resolved("{tool_temperature_shift: off}") == without);
+  CHECK(resolved("{tool_temperature_shift: off, static_peak: 'off'}") == without);  // of a later version too
+  CHECK(resolved("{tool_temperature_shift: {slope: -9e-4 1/K}}", {"effects.tool_temperature_shift=off"}) ==
+        without);
+  CHECK(pipeline::resolved_yaml(read_case_text(small_stamping + "effects: {tool_temperature_shift: {slope: 0 "
+                                                                "1/K}}\n",
+                                               "x.yaml", "")
+                                    .settings) != without);  // the comparison can fail
+
+  const auto ids = [](const std::string& effects) {
+    std::vector<std::string> found;
+    for (const Problem& problem : problems_of(small_stamping + "effects: " + effects + "\n"))
+      found.push_back(problem.id);
+    return found;
+  };
+  CHECK(ids("{tool_temperature_shift: on}") ==
+        std::vector<std::string>{"effects.tool_temperature_shift.map"});
+  CHECK(ids("{tool_temperature_shifd: off}") ==
+        std::vector<std::string>{"effects.tool_temperature_shifd.unknown"});
+  CHECK(ids("{tool_temperature_shift: {slope: off}}") ==
+        std::vector<std::string>{"effects.tool_temperature_shift.slope.unit"});
+}
+
+namespace {
+
+/// Values about the ends of a range, as a file holds them; none where there is no end.
+struct Ends {
+  std::vector<std::string> inside, outside;
+};
+
+Ends ends_of(const pipeline::Key& key) {
+  const pipeline::Interval range = pipeline::interval_of(key.range, key.unit);
+  const bool bounded = std::isfinite(range.low) && std::isfinite(range.high);
+  const bool whole = key.type == pipeline::KeyType::integer;
+  const double little = whole ? 1.0 : 1e-9 * (bounded ? range.high - range.low : 1.0);
+  const auto written = [&](double value) { return write_quantity(value, key.unit); };
+  Ends ends;
+  if (std::isfinite(range.low)) {
+    ends.inside.push_back(written(range.low_open ? range.low + little : range.low));
+    ends.outside.push_back(written(range.low_open ? range.low : range.low - little));
+  }
+  if (std::isfinite(range.high)) {
+    ends.inside.push_back(written(range.high_open ? range.high - little : range.high));
+    ends.outside.push_back(written(range.high_open ? range.high : range.high + little));
+  }
+  return ends;
+}
+
+bool is_out_of_range(const std::string& path, const std::string& value,
+                     std::vector<std::string> assignments) {
+  assignments.push_back(path + "=" + value);
+  const Problems problems = problems_of(small_stamping, assignments);
+  return std::any_of(problems.begin(), problems.end(),
+                     [&](const Problem& problem) { return problem.id == path + ".range"; });
+}
+
+}  // namespace
+
+// The schema and the room behind it state the same range under the same id: a room that asks for more would
+// contradict the reference page.
+TEST_CASE("every range is refused beyond its ends, and no room finds a value within them out of range",
+          "[pipeline][config]") {
+  const std::string law = "friction={law: stribeck, calibration: {plate_area: 0.01 m^2}, ";
+  const std::vector<std::vector<std::string>> cases{
+      {"effects={tool_temperature_shift: {slope: 0 1/K}}"},
+      {law + "scale: 0.5, exponent: 0.14}"},
+      {law + "form: linear, offset: 0.1, slope: 0.1, reference_hersey: 1}"}};
+  std::set<std::string> tried;
+  for (const auto& assignments : cases) {
+    const Case base = read_case_text(small_stamping, "x.yaml", configs, assignments);
+    for (const pipeline::Key& key : pipeline::schema()) {
+      const bool number = key.type == pipeline::KeyType::quantity || key.type == pipeline::KeyType::integer;
+      if (!number || key.range.empty() || !base.settings.has(key.path) || !tried.insert(key.path).second)
+        continue;
+      const Ends ends = ends_of(key);
+      for (const std::string& value : ends.inside) {
+        INFO(key.path << " = " << value);
+        CHECK_FALSE(is_out_of_range(key.path, value, assignments));
+      }
+      for (const std::string& value : ends.outside) {
+        INFO(key.path << " = " << value);
+        CHECK(is_out_of_range(key.path, value, assignments));
+      }
+    }
+  }
+  CHECK(tried.size() > 50);
 }
 
 TEST_CASE("keys of a law that is not the chosen one are allowed and noted", "[pipeline][config]") {

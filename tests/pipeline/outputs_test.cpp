@@ -213,18 +213,23 @@ TEST_CASE("a damaged fabric file is refused with every fault named", "[outputs]"
   REQUIRE(found.size() == 3);
   CHECK(found[0].key == "thickness_m");
   CHECK(found[0].rule == "is missing");
+  CHECK(found[0].id == "fabric.json.thickness_m.missing");
   CHECK(found[1].key == "provenance.grid_error");
   CHECK(found[1].rule == "must be a number");
+  CHECK(found[1].id == "fabric.json.provenance.grid_error.type");
   CHECK(found[2].key == "thikness_m");
   CHECK(found[2].file == "fabric.json");
+  CHECK(found[2].id == "fabric.json.thikness_m.unknown");
 
   const Problems turned = problems_of(
       replaced(good, "\"temperature_K\": [293.15, 453.15]", "\"temperature_K\": [453.15, 293.15]"));
   REQUIRE(turned.size() == 1);
   CHECK(turned[0].key == "bending.warp");
+  CHECK(turned[0].id == "fabric.json.bending.warp.table");
 
   REQUIRE(problems_of(good.substr(0, good.size() / 2)).size() == 1);
   CHECK_THAT(problems_of(good.substr(0, good.size() / 2))[0].rule, Contains("must be JSON"));
+  CHECK(problems_of(good.substr(0, good.size() / 2))[0].id == "fabric.json.syntax");
   CHECK_FALSE(problems_of("[]").empty());
   CHECK_FALSE(problems_of("{\"thickness_m\": 1e999}").empty());
 }

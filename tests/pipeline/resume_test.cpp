@@ -194,8 +194,9 @@ TEST_CASE("SIGTERM and SIGINT leave a checkpoint and say how to go on", "[pipeli
              Catch::Contains("starts from the beginning") && Catch::Contains("--resume would have gone on"));
 }
 
-TEST_CASE("a complete run that is resumed changes nothing, and without a checkpoint it starts from the beginning",
-          "[pipeline][resume]") {
+TEST_CASE(
+    "a complete run that is resumed changes nothing, and without a checkpoint it starts from the beginning",
+    "[pipeline][resume]") {
   const Scratch scratch;
   auto options = warm_options(scratch, small_stamping());
   options.resume = true;
@@ -213,6 +214,19 @@ TEST_CASE("a complete run that is resumed changes nothing, and without a checkpo
   CHECK(first_difference(before, contents(scratch / "run")) == "");
 }
 
+namespace {
+
+std::string rule_broken_by(const pipeline::RunOptions& options) {
+  try {
+    pipeline::run_case(options);
+  } catch (const InputError& error) {
+    return error.problems().front().id;
+  }
+  return "";
+}
+
+}  // namespace
+
 TEST_CASE("going on with other inputs is refused and names what changed, and a damaged checkpoint too",
           "[pipeline][resume][wrong input]") {
   const Scratch scratch;
@@ -224,6 +238,7 @@ TEST_CASE("going on with other inputs is refused and names what changed, and a d
   CHECK_THROWS_WITH(
       pipeline::run_case(changed),
       Catch::Contains("process.binder_force was 650 N, is 700 N") && Catch::Contains("without --resume"));
+  CHECK(rule_broken_by(changed) == "run.resume.changed");
   CHECK(first_difference(before, contents(scratch / "run")) == "");  // nothing was touched
 
   auto same = warm_options(scratch, settings);
@@ -237,6 +252,7 @@ TEST_CASE("going on with other inputs is refused and names what changed, and a d
   fs::resize_file(checkpoint, 100);
   CHECK_THROWS_WITH(pipeline::run_case(same),
                     Catch::Contains("cut short") && Catch::Contains("without --resume"));
+  CHECK(rule_broken_by(same) == "run.resume.damaged");
   same.resume = false;
   CHECK(pipeline::run_case(same) == pipeline::exit_done);
   CHECK(first_difference(before, contents(scratch / "run")) == "");

@@ -13,6 +13,7 @@
 #include "core/problem.h"
 #include "pipeline/commands.h"
 #include "pipeline/outputs.h"
+#include "pipeline/stages.h"
 #include "tool_settings.h"
 
 using namespace heddle;
@@ -141,6 +142,38 @@ TEST_CASE("a folder that holds another case is left alone without --force", "[pi
                     Catch::Contains("not a run of heddle"));
 }
 
+TEST_CASE("what only a command can break is refused under its rule", "[pipeline][run][wrong input]") {
+  const Scratch scratch;
+  const auto rule_broken_by = [](const auto& command) -> std::string {
+    try {
+      command();
+    } catch (const InputError& error) {
+      return error.problems().front().id;
+    }
+    return "";
+  };
+  const auto weave_into = [&](const fs::path& folder) {
+    return rule_broken_by([&] { pipeline::weave_case(options_for("unit_cell.yaml", folder, {})); });
+  };
+  std::ofstream(scratch / "letter.txt") << "mine";
+  fs::create_directories(scratch / "home");
+  std::ofstream(scratch / "home" / "letter.txt") << "mine";
+  fs::create_directories(scratch / "stamped" / "macroscale");
+  std::ofstream(scratch / "stamped" / "resolved.yaml") << "heddle: 1\nname: unit_cell\n";
+  CHECK(weave_into(scratch / "letter.txt") == "output.folder.file");
+  CHECK(weave_into(scratch / "letter.txt" / "below") == "output.folder.create");
+  CHECK(weave_into(scratch / "home") == "output.folder.other");
+  CHECK(weave_into(scratch / "stamped") == "output.folder.stamped");
+  CHECK(rule_broken_by([&] { pipeline::friction_case(options_for("unit_cell.yaml", scratch / "x", {})); }) ==
+        "case.part");
+  // A configuration with real contact pressure has a cell; one put together by hand may have none.
+  pipeline::Case by_hand = pipeline::read_case(fs::path(HEDDLE_SOURCE_DIR) / "configs/friction_test.yaml");
+  by_hand.cell.reset();
+  by_hand.friction->contact_pressure = macroscale::ContactPressure::real;
+  CHECK(rule_broken_by([&] { pipeline::run_friction_stage(by_hand, nullptr); }) ==
+        "friction.contact_pressure.weave");
+}
+
 TEST_CASE("an effect at its off value restores the baseline byte for byte, and acts linearly when small",
           "[pipeline][run][effect]") {
   const Scratch scratch;
@@ -151,6 +184,7 @@ TEST_CASE("an effect at its off value restores the baseline byte for byte, and a
   };
   const std::string off = history("absent", "effects={}");
   CHECK((history("off", "effects={tool_temperature_shift: {slope: 0 1/K, reference: 85 degC}}") == off));
+  CHECK((history("written", "effects={tool_temperature_shift: off, static_peak: off}") == off));
 
   const auto work = [&](const std::string& name, const std::string& slope) {
     stamped(scratch, name,
