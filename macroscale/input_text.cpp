@@ -167,7 +167,7 @@ std::uintmax_t require_file(const std::filesystem::path& file, const std::string
 
 std::string unit_name(double metres) {
   static const std::vector<std::pair<double, const char*>> names{
-      {1.0, "m"}, {1e-1, "dm"}, {1e-2, "cm"}, {1e-3, "mm"}, {1e-6, "um"}, {0.0254, "inch"}, {0.3048, "foot"}};
+      {1.0, "m"}, {1e-1, "dm"}, {1e-2, "cm"}, {1e-3, "mm"}, {1e-6, "um"}, {0.0254, "in"}, {0.3048, "foot"}};
   for (const auto& [length, name] : names) {
     if (same_length(metres, length)) return name;
   }

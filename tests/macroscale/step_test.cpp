@@ -201,7 +201,7 @@ TEST_CASE("the unit a STEP file states must be the one the case states", "[macro
                "#9003 = DIMENSIONAL_EXPONENTS(1.,0.,0.,0.,0.,0.,0.);");
   file = tool(folder.write("inch.step", inch));
   CHECK(names(refusal([&] { read_tool(file, expected); }), "tools.punch.length_unit.stated",
-              {"inch.step states: inch"}));
+              {"inch.step states: in"}));
 
   file = tool(folder.write("none.step",
                            replaced(punch, "GLOBAL_UNIT_ASSIGNED_CONTEXT", "GLOBAL_UNIT_FORGOTTEN_CONTEXT")));

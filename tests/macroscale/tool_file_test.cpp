@@ -154,7 +154,7 @@ TEST_CASE("a tool in the wrong unit is refused with the unit that fits", "[macro
   file = tool(folder.write("m.stl", binary_stl(cube(0.14e-3))));
   require_refused(file, "length_unit.size", {"length_unit: m would make it 140 x 140 x 140 mm"});
   file = tool(folder.write("inch.stl", binary_stl(cube(0.14 / 25.4))));
-  require_refused(file, "length_unit.size", {"length_unit: inch would make it 140 x 140 x 140 mm"});
+  require_refused(file, "length_unit.size", {"length_unit: in would make it 140 x 140 x 140 mm"});
   file.length_unit = -1.0;
   file.mesh_size = 0.0;
   CHECK(refusal([&] { read_tool(file, expected); }).size() == 2);
