@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include <fmt/format.h>
 #include <tbb/parallel_for.h>
@@ -36,11 +37,33 @@ double wet_gap(const FilmMap& map, const FaceDepth& face, double fill) {
     for (std::size_t g = 0; g < 4; ++g)
       if (face.covered[e][g]) gaps.push_back(map.gap[e][g]);
   std::sort(gaps.begin(), gaps.end());
-  double volume = 0.0, filled = 0.0;
+  if (gaps.empty()) return 0.0;
+  double volume = 0.0, filled = 0.0, below = gaps.front();
   for (const double gap : gaps) volume += gap;
-  for (const double gap : gaps)
-    if ((filled += gap) >= fill * volume) return gap * (1.0 + 1e-9);  // so that its mirror images are wet too
-  return gaps.empty() ? 0.0 : gaps.back();
+  for (std::size_t k = 0; k < gaps.size();) {
+    // Samples that mirror each other fill together; between such levels the width is interpolated, so that it
+    // moves without jumps.
+    double level = 0.0;
+    const double gap = gaps[k];
+    for (; k < gaps.size() && gaps[k] <= gap * (1.0 + 1e-9); ++k) level += gaps[k];
+    if (filled + level >= fill * volume)
+      return (below + (gap - below) * (fill * volume - filled) / level) * (1.0 + 1e-9);
+    filled += level;
+    below = gap;
+  }
+  return below;
+}
+
+// How far a node stands beyond the depth to which resin goes: 0 to 1 over one spacing.
+double openness(const FaceDepth& face, int i, int j, double deepest) {
+  const int n = face.samples;
+  const double here = face.at_nodes[i * n + j];
+  double change = 1e-12;
+  for (const auto& [di, dj] : {std::pair{0, 1}, {1, 0}, {0, n - 1}, {n - 1, 0}}) {
+    const int k = (i + di) % n * n + (j + dj) % n;
+    if (face.covered_nodes[k]) change = std::max(change, std::abs(face.at_nodes[k] - here));
+  }
+  return std::clamp(0.5 + (here - deepest) / change, 0.0, 1.0);
 }
 
 void check_spec(const FilmSpec& spec) {
@@ -71,7 +94,7 @@ class LoadBalance {
     if (touching >= 0.0)
       lift(roughness, touching);
     else
-      press(touching);
+      press(roughness, touching);
   }
 
  private:
@@ -105,12 +128,19 @@ class LoadBalance {
                    [&](double log_gap) { return excess(roughness - std::exp(log_gap)); });
   }
 
-  // The tows carry the rest; alone they would do so at this depth.
-  void press(double touching) {
-    const double deepest = bearing_.plate().depth_at(pressure_);
-    const double f_deepest = excess(deepest);
-    if (std::abs(f_deepest) <= small) return;
-    bracketed_root(0.0, touching, deepest, f_deepest, small, [&](double d) { return excess(d); });
+  // The tows carry the rest. The film's share grows with the approach at first and falls once the crowns are
+  // flat, so there may be more than one balance: the one met first by a tool that comes down is meant.
+  void press(double roughness, double touching) {
+    const double deepest = bearing_.plate().depth_at(pressure_);  // the tows alone
+    double above = 0.0, below = 0.0, f_above = touching, f_below = touching;
+    for (double next = roughness; f_below < 0.0; next *= 2.0) {
+      above = below;
+      f_above = f_below;
+      below = std::min(next, deepest);
+      f_below = excess(below);
+      if (below == deepest && f_below <= small) return;
+    }
+    bracketed_root(above, f_above, below, f_below, small, [&](double d) { return excess(d); });
   }
 
  public:
@@ -166,18 +196,28 @@ FilmMap film_map(const UnitCell& cell, const FaceDepth& face, double approach, d
   const auto gap = [&](double depth) { return roughness + std::max(depth - approach, 0.0); };
   const auto edge = [](const std::array<double, 2>& at) { return Vector2d(at[0], at[1]); };
   const std::array<double, 2> size = cell.size();
-  FilmMap map{
-      face.samples, face.samples, edge(cell.place(size[0], 0.0)), edge(cell.place(0.0, size[1])), {}, {}, {}};
+  FilmMap map{face.samples,
+              face.samples,
+              edge(cell.place(size[0], 0.0)),
+              edge(cell.place(0.0, size[1])),
+              {},
+              {},
+              {},
+              {}};
   map.gap.resize(face.at_points.size());
   map.resin.resize(face.at_points.size());
   map.wet.resize(face.at_nodes.size());
   for (std::size_t e = 0; e < map.gap.size(); ++e)
     for (std::size_t g = 0; g < 4; ++g) map.gap[e][g] = gap(face.at_points[e][g]);
   const double widest = wet_gap(map, face, fill);
-  for (std::size_t e = 0; e < map.gap.size(); ++e) {
-    map.wet[e] = face.covered_nodes[e] && gap(face.at_nodes[e]) <= widest;
-    for (std::size_t g = 0; g < 4; ++g) map.resin[e][g] = face.covered[e][g] && map.gap[e][g] <= widest;
-  }
+  map.openness.assign(face.at_nodes.size(), 1.0);
+  for (int i = 0; i < face.samples; ++i)
+    for (int j = 0; j < face.samples; ++j) {
+      const std::size_t k = i * face.samples + j;
+      if (face.covered_nodes[k]) map.openness[k] = openness(face, i, j, approach + widest - roughness);
+      map.wet[k] = map.openness[k] < 1.0;
+      for (std::size_t g = 0; g < 4; ++g) map.resin[k][g] = face.covered[k][g] && map.gap[k][g] <= widest;
+    }
   return map;
 }
 

@@ -79,7 +79,7 @@ class FilmSystem {
   double energy() const { return energy_; }
   double rounding() const { return 1e-13 * size_; }
 
-  /// Energy, residual (net outflow of each node's patch) and stiffness at nodal pressures.
+  /// Energy, its slope (div q over each node's patch) and stiffness at nodal pressures.
   void evaluate(const std::vector<double>& pressure);
   /// Newton's step with the pressures of `held` unknowns going to zero; false if not positive definite.
   bool step(const std::vector<double>& unknown_pressure, const std::vector<uint8_t>& held,
@@ -95,6 +95,7 @@ class FilmSystem {
   }
   void number_unknowns();
   void build_pattern();
+  void add_ties(const std::vector<double>& pressure);
   Vector4d corner_values(std::size_t live, const std::vector<double>& pressure) const;
   ElementTerms element_terms(std::size_t live, const Vector4d& pressure);
 
@@ -112,7 +113,8 @@ class FilmSystem {
   std::vector<std::size_t> diagonal_;
   std::unique_ptr<SparseSolver> solver_;
   std::vector<double> residual_, stiffness_;
-  std::vector<double> outflow_;  // of every node, those in the air too
+  std::vector<double> source_;  // int N div q of every node, those in the air too
+  std::vector<double> tie_;     // of each unknown to zero pressure: energy tie p^2 / 2
   double energy_ = 0.0, size_ = 0.0;
 };
 
@@ -190,7 +192,7 @@ void FilmSystem::evaluate(const std::vector<double>& pressure) {
   // Elements side by side, sums in their order: the same bytes on any number of threads.
   tbb::parallel_for(std::size_t{0}, live_.size(),
                     [&](std::size_t k) { terms_[k] = element_terms(k, corner_values(k, pressure)); });
-  outflow_.assign(map_.wet.size(), 0.0);
+  source_.assign(map_.wet.size(), 0.0);
   std::fill(stiffness_.begin(), stiffness_.end(), 0.0);
   energy_ = size_ = 0.0;
   for (std::size_t k = 0; k < live_.size(); ++k) {
@@ -199,7 +201,7 @@ void FilmSystem::evaluate(const std::vector<double>& pressure) {
     size_ += terms.size;
     const auto at = corners(map_, live_[k]);
     for (std::size_t a = 0; a < 4; ++a) {
-      outflow_[at[a]] += terms.residual[static_cast<int>(a)];
+      source_[at[a]] += terms.residual[static_cast<int>(a)];
       for (std::size_t b = 0; b < 4; ++b)
         if (place_[k][4 * a + b] >= 0)
           stiffness_[static_cast<std::size_t>(place_[k][4 * a + b])] +=
@@ -207,9 +209,26 @@ void FilmSystem::evaluate(const std::vector<double>& pressure) {
     }
   }
   residual_.resize(node_.size());
-  for (std::size_t u = 0; u < node_.size(); ++u) residual_[u] = outflow_[node_[u]];
+  for (std::size_t u = 0; u < node_.size(); ++u) residual_[u] = source_[node_[u]];
+  add_ties(pressure);
   if (!std::isfinite(energy_))
     throw NumericalError("film: the energy of the pressure is not finite (a gap or a pressure is not)");
+}
+
+void FilmSystem::add_ties(const std::vector<double>& pressure) {
+  if (map_.openness.empty()) return;
+  if (tie_.empty())  // as stiff as the film itself half way out, rigid at the end
+    for (std::size_t u = 0; u < node_.size(); ++u) {
+      const double out = map_.openness[node_[u]];
+      tie_.push_back(stiffness_[diagonal_[u]] * out / (1.0 - out));
+    }
+  for (std::size_t u = 0; u < node_.size(); ++u) {
+    const double p = pressure[node_[u]];
+    energy_ += 0.5 * tie_[u] * p * p;
+    size_ += 0.5 * tie_[u] * p * p;
+    residual_[u] += tie_[u] * p;
+    stiffness_[diagonal_[u]] += tie_[u];
+  }
 }
 
 // K_II dp_I = -R_I - K_IA dp_A with dp_A = -p_A.
@@ -262,8 +281,13 @@ void FilmSystem::summarise(const std::vector<double>& pressure, FilmPressure& re
     }
   }
   const double area = map_.element_area() * map_.elements();
-  for (const double outflow : outflow_)
-    (outflow < 0.0 ? result.intake : result.outflow) += std::abs(outflow) / area;
+  for (std::size_t n = 0; n < source_.size(); ++n) {
+    const double source = source_[n] / area;
+    if (source < 0.0)
+      result.outflow -= source;
+    else
+      (map_.wet[n] ? result.voids : result.intake) += source;
+  }
 }
 
 void require_an_opening(const FilmMap& map) {
@@ -380,7 +404,7 @@ double FilmMap::element_area() const {
 
 FilmMap film_map(int columns, int rows, const Vector2d& first, const Vector2d& second,
                  const std::function<double(double, double)>& gap, const std::function<bool(int, int)>& wet) {
-  FilmMap map{columns, rows, first, second, {}, {}, {}};
+  FilmMap map{columns, rows, first, second, {}, {}, {}, {}};
   for (int i = 0; i < rows; ++i)
     for (int j = 0; j < columns; ++j) {
       map.wet.push_back(wet(j, i) ? 1 : 0);

@@ -20,6 +20,11 @@ struct FilmMap {
   std::vector<std::array<uint8_t, 4>> resin;  ///< 1 where resin fills the gap, 0 where air does
   std::vector<uint8_t> wet;                   ///< per node: 1 in the resin, 0 open to the air (p = 0)
 
+  /// Per node, 0 to 1: how far it stands into the air. Where the resin's edge passes between nodes, those
+  /// near it are tied to zero pressure the more the farther out they are, so that the load moves without
+  /// jumps as the edge does. Empty: the edge follows the nodes.
+  std::vector<double> openness;
+
   int elements() const { return columns * rows; }
   double element_area() const;  ///< [m^2]
 };
@@ -61,9 +66,10 @@ struct FilmPressure {
       Eigen::Vector2d::Zero();  ///< part of it where the film has broken, taken as full [Pa]
   double dissipation = 0.0;  ///< mean power turned to heat in the film [W/m^2]; U . traction if all is well
   double resin_share = 0.0;  ///< share of the repeat with resin [-]
-  double ruptured_share = 0.0;         ///< with resin but no pressure [-]
-  double intake = 0.0, outflow = 0.0;  ///< resin taken in from the air's edge, and let go there and where the
-                                       ///< film breaks, per area of the repeat [m/s]; equal
+  double ruptured_share = 0.0;  ///< with resin but no pressure [-]
+  /// Resin drawn in where the film begins, room that opens where it breaks, and film with its room that
+  /// leaves at the end, per area of the repeat [m/s]: intake + voids = outflow.
+  double intake = 0.0, voids = 0.0, outflow = 0.0;
 };
 
 /// Film between a resting fabric and a tool that slides over it (Reynolds' equation, generalised Newtonian):

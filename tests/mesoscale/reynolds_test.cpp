@@ -68,7 +68,7 @@ TEST_CASE("a linear slider carries 6 eta U L^2 / h^2 (ln K - 2 (K - 1) / (K + 1)
     error[k] = taper.per_length(film.load, n) / load - 1.0;
     drag_error[k] = taper.per_length(film.traction.x(), n) / drag - 1.0;
     CHECK(film.intake * (n + 1) * L / n == Approx(flow).epsilon(2e-3));
-    CHECK(film.outflow == Approx(film.intake).epsilon(1e-12));
+    CHECK(film.outflow == Approx(film.intake).epsilon(1e-10));
   }
   show(
       "linear slider: load off by {:.2e} {:.2e} {:.2e}, orders {:.2f} {:.2f}; drag off by {:.2e}, orders "
@@ -384,8 +384,9 @@ TEST_CASE("all work of the tool turns to heat in the film, broken or not", "[fil
   CHECK(film.residual <= 1e-8);
   CHECK(film.ruptured_share > 0.3);
   CHECK(film.dissipation == Approx(film.traction.dot(sliding)).epsilon(1e-7));
-  CHECK(film.intake == Approx(film.outflow).epsilon(1e-10));
+  CHECK(film.intake + film.voids == Approx(film.outflow).epsilon(1e-10));
   CHECK(film.intake > 0.0);
+  CHECK(film.voids > 0.0);
   CHECK(*std::min_element(film.pressure.begin(), film.pressure.end()) == 0.0);
   // Half-Sommerfeld is no solution: cut off, the unbroken film does not conserve mass where it ends.
   FilmPressure cut = solve_reynolds(crown.map(64), fluid, sliding, {.rupture = Rupture::never});
