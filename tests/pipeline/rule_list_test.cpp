@@ -174,6 +174,8 @@ const std::vector<Elsewhere> elsewhere{
      "the file under check itself, or one that vanished since"},
     {"friction.calibration.box_order", "friction/check_test.cpp",
      "each rule of the model is met by one bad value", "the box is measured from the table"},
+    {"film.fill.closed", "mesoscale/reynolds_test.cpp", "a closed film is refused: nothing fixes the level of its pressure",
+     "a study of the film, which no key asks for"},
     {"level_set.voxel.range", "mesoscale/level_set_test.cpp", "a voxel that cannot hold a tow is refused",
      "a check of the cell, not a key"},
     {"fabric.*.empty", of_fabric, "an empty fabric is refused table by table",
