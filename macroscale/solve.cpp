@@ -32,6 +32,16 @@ friction::Context context_of(const Scene& scene, double pressure, double shear_a
   return context;
 }
 
+// Slip direction against the warp, both in the tangent plane of the contact [rad]; 0 at rest.
+double slip_angle(const Scene& scene, const VectorXd& x, int node, const Vector3d& normal, const Vector3d& v) {
+  const Blank& blank = scene.blank;
+  const int row = blank.nv + 1, i = node / row;
+  const int before = i > 0 ? node - row : node, after = i < blank.nu ? node + row : node;
+  const Vector3d tow = x.segment<3>(3 * after) - x.segment<3>(3 * before);
+  const Vector3d warp = tow - normal.dot(tow) * normal, slip = v - normal.dot(v) * normal;
+  return std::atan2(normal.dot(warp.cross(slip)), warp.dot(slip));
+}
+
 using FrictionPoints = std::vector<std::vector<FrictionPoint>>;
 
 // Loads, normals and contexts of all points at x: what the next pass holds.
@@ -50,6 +60,9 @@ FrictionPoints freeze(const System& system, const StepData& step, const VectorXd
       point.load = contact.pressure * scene.blank.node_area[i];
       point.normal = d.normal;
       point.context = context_of(scene, contact.pressure, shear_angle[i]);
+      point.context.time_step = step.dt;
+      point.context.slip_angle =
+          slip_angle(scene, x, i, d.normal, system.relative_velocity(step, x, k, i));
     });
   return points;
 }
