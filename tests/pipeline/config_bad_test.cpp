@@ -35,7 +35,7 @@ const std::vector<BadFile> bad_files{
     {"fabric_thinner_than_its_tows", {{"weave.fabric_thickness.consistent", 3}}},
     {"fitted_to_nothing", {{"effects.tool_temperature_shift.slope.fitted", 5}}},
     {"key_of_another_block", {{"cell.fibre_density.unknown", 4}}},
-    {"later_effect", {{"effects.static_peak.later", 5}}},
+    {"later_effect", {{"effects.binder_tilt.later", 5}}},
     {"later_tool_file", {{"tools.punch.file.later", 6}}},
     {"leading_zero", {{"forming.compaction_exponent.unit", 8}}},
     {"many_at_once",

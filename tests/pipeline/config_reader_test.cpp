@@ -171,7 +171,10 @@ TEST_CASE("every default of the schema obeys its own rule", "[pipeline][config]"
     INFO(key.path << ": " << key.default_text);
     std::vector<std::string> assignments{key.path + "=" + key.default_text};
     if (key.path.starts_with("effects.")) {
-      assignments.insert(assignments.begin(), "effects.tool_temperature_shift.slope=0 1/K");
+      const std::string block = key.path.substr(0, key.path.rfind('.') + 1);
+      for (const pipeline::Key& other : pipeline::schema())
+        if (other.path.starts_with(block) && other.presence == pipeline::Presence::required)
+          assignments.insert(assignments.begin(), other.path + "=0 " + other.unit);
     }
     CHECK(format(problems_of(small_stamping, assignments)) == "");
   }
