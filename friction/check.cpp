@@ -105,7 +105,7 @@ void check_law(const HerseyLinear& law, const CalibrationBox& box, Problems& pro
            .way_out = "Raise the offset, or calibrate the power form, which cannot turn negative."});
 }
 
-std::string describe(const Range& range, const char* unit) {
+std::string describe(const Bounds& range, const char* unit) {
   const auto end = [&](double value) { return std::isinf(value) ? "" : write_quantity(value, unit); };
   return fmt::format("{}{}, {}{}", range.low_open ? '(' : '[', end(range.low), end(range.high),
                      range.high_open ? ')' : ']');

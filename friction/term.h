@@ -5,7 +5,7 @@
 namespace heddle::friction {
 
 /// Interval that a parameter must lie in, in SI.
-struct Range {
+struct Bounds {
   double low = -std::numeric_limits<double>::infinity();
   double high = std::numeric_limits<double>::infinity();
   bool low_open = true, high_open = true;
@@ -15,8 +15,8 @@ struct Range {
     return (low_open ? x > low : x >= low) && (high_open ? x < high : x <= high);
   }
 };
-inline constexpr Range positive_range{.low = 0.0};
-inline constexpr Range not_negative{.low = 0.0, .low_open = false};
+inline constexpr Bounds positive_range{.low = 0.0};
+inline constexpr Bounds not_negative{.low = 0.0, .low_open = false};
 
 /// One number of a law, rheology or effect. The number of an effect that comes first is its amplitude, whose
 /// off value is 0.
@@ -25,7 +25,7 @@ struct Field {
   const char* name;  ///< key in the configuration
   const char* unit;  ///< example unit as core/units takes it; "" = plain number, "degC" = absolute
   double Term::*member;
-  Range range;
+  Bounds range;
   const char* help;  ///< one line
 };
 

@@ -13,7 +13,7 @@ namespace {
 
 using friction::About;
 
-std::string interval(const friction::Range& range, const char* unit) {
+std::string interval(const friction::Bounds& range, const char* unit) {
   const bool low = std::isfinite(range.low), high = std::isfinite(range.high);
   if (!low && !high) return "";
   return fmt::format("{}{}, {}{}", range.low_open ? '(' : '[', low ? write_quantity(range.low, unit) : "",

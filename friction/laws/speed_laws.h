@@ -73,7 +73,7 @@ Sensitive coefficient(const SlipResistance& law, const Inputs& inputs);
 /// S - S0 after the step.
 double slip_resistance_after(const SlipResistance& law, const Context& context, const ContactState& state);
 
-inline constexpr Range coefficient_range{.low = 0.0, .high = 10.0, .low_open = false};
+inline constexpr Bounds coefficient_range{.low = 0.0, .high = 10.0, .low_open = false};
 
 template <>
 struct About<StaticKinetic> {
