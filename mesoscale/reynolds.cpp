@@ -293,7 +293,7 @@ void FilmSystem::summarise(const std::vector<double>& pressure, FilmPressure& re
 void require_an_opening(const FilmMap& map) {
   if (std::find(map.wet.begin(), map.wet.end(), uint8_t{0}) != map.wet.end()) return;
   throw InputError(
-      {{"film.fill.closed", "fill", "",
+      {{"film.fill.closed"_rule, "fill", "",
         "must leave some of the gap to the air: a closed film carries any load", "Lower the fill level."}});
 }
 
