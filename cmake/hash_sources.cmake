@@ -3,7 +3,8 @@
 #   cmake -DROOT=... -DOUTPUT=... -DBUILD="compiler and flags" -P hash_sources.cmake
 # Files are listed when this runs, not when the build was configured: a header that is new counts at once.
 cmake_minimum_required(VERSION 3.25)
-set(stage_files case.h case.cpp stages.h stages.cpp stage_store.h stage_store.cpp stamping_record.h stamping_record.cpp)
+set(stage_files case.h case.cpp stages.h stages.cpp friction_keys.h friction_keys.cpp friction_store.h
+    friction_store.cpp stage_store.h stage_store.cpp stamping_record.h stamping_record.cpp)
 
 function(hash_of result)
   set(text "")
@@ -17,7 +18,7 @@ endfunction()
 
 set(lines "")
 foreach(room core friction mesoscale macroscale)
-  file(GLOB files RELATIVE ${ROOT} ${ROOT}/${room}/*.h ${ROOT}/${room}/*.cpp)
+  file(GLOB_RECURSE files RELATIVE ${ROOT} ${ROOT}/${room}/*.h ${ROOT}/${room}/*.cpp)
   list(SORT files)
   hash_of(digest ${files})
   string(APPEND lines "    {\"${room}\", \"${digest}\"},\n")

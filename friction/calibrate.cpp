@@ -35,6 +35,9 @@ void set_start(HerseyLinear& law, const Overview& overview) {
   }
   law.offset = overview.mean_mu - law.slope * overview.first_hersey / law.reference;
 }
+// The numbers that came are the start.
+template <class AnyLaw>
+void set_start(AnyLaw&, const Overview&) {}
 
 double spread(const std::vector<double>& values) {
   const auto [low, high] = std::minmax_element(values.begin(), values.end());
@@ -49,7 +52,10 @@ class Fit {
       const AreaFunction& area, bool hold_slope, bool with_area_exponent)
       : model_(start), rows_(rows), hold_slope_(hold_slope), with_area_exponent_(with_area_exponent) {
     model_.box = {};  // the rows are inside by definition
-    for (const FrictionTestRow& row : rows) contexts_.push_back(contact_of(row, rig, area));
+    for (const FrictionTestRow& row : rows) {
+      contexts_.push_back(contact_of(row, rig, area));
+      states_.push_back(state_after_pull(model_, contexts_.back(), rig));
+    }
     nominal_contexts_ = contexts_;
     choose_start();
     list_parameters();
@@ -135,7 +141,7 @@ class Fit {
 
   void fill(Eigen::VectorXd& residuals, Eigen::MatrixXd& slopes) const {
     for (std::size_t i = 0; i < rows_.size(); ++i) {
-      ParameterSlopes at = parameter_slopes(model_, contexts_[i]);
+      ParameterSlopes at = parameter_slopes(model_, contexts_[i], states_[i]);
       if (with_area_exponent_) at.dmu_dparameter.push_back(at.dmu_dlog_hersey * log_load(i));
       const auto row = static_cast<Eigen::Index>(i);
       residuals[row] = at.mu / measured_mu(i) - 1.0;
@@ -186,12 +192,26 @@ class Fit {
   Model model_;
   std::span<const FrictionTestRow> rows_;
   std::vector<Context> contexts_, nominal_contexts_;
+  std::vector<ContactState> states_;  ///< when each force is read
   std::vector<FittedParameter> parameters_;
   std::vector<std::size_t> free_;  ///< indices of the fitted parameters
   bool hold_slope_;
   bool with_area_exponent_;
   bool hersey_varies_ = false;
 };
+
+/// Laws whose numbers steady pulls cannot tell.
+void demand_fittable(const Law& law) {
+  const bool table = std::holds_alternative<HerseyTable>(law);
+  if (!table && !std::holds_alternative<StaticKinetic>(law) && !std::holds_alternative<SlipResistance>(law))
+    return;
+  throw InputError({{.id = "friction.calibration.law"_rule,
+                     .key = "friction.calibration.data",
+                     .value = id_of(law),
+                     .rule = table ? "fits the numbers of a law, and a table has none"
+                                   : "holds one force a pull, which cannot tell how mu changes along it",
+                     .way_out = "Give the law's own numbers, or calibrate another law."}});
+}
 
 void demand_sound_input(const Model& start, std::span<const FrictionTestRow> rows, const FrictionRig& rig) {
   Problems problems = check(rig);
@@ -232,6 +252,7 @@ FrictionRig with_plate_area(FrictionRig rig, double area) {
 
 Calibration calibrate(const Model& start, std::span<const FrictionTestRow> rows, const FrictionRig& rig,
                       const AreaFunction& area, const CalibrationOptions& options) {
+  demand_fittable(start.law);
   demand_sound_input(start, rows, rig);
   Fit fit(start, rows, rig, area, options.hold_tool_temperature_slope, false);
   Calibration result;

@@ -4,6 +4,8 @@
 #include <limits>
 #include <string>
 
+#include "core/units.h"
+#include "friction/combinations.h"
 #include "friction/model.h"
 
 namespace heddle::friction {
@@ -107,6 +109,69 @@ void check_law(const HerseyLinear& law, const CalibrationBox& box, Problems& pro
            .others = {"friction.slope", "friction.reference_hersey"}});
 }
 
+std::string describe(const Bounds& range, const char* unit) {
+  const auto end = [&](double value) { return std::isinf(value) ? "" : write_quantity(value, unit); };
+  return fmt::format("{}{}, {}{}", range.low_open ? '(' : '[', end(range.low), end(range.high),
+                     range.high_open ? ')' : ']');
+}
+
+/// Every number of a term against its range. `path` is the key above the numbers.
+template <class Term>
+void check_fields(const Term& term, const std::string& path, Problems& problems) {
+  for (const Field<Term>& field : About<Term>::fields) {
+    const double value = term.*(field.member);
+    const std::string key = fmt::format("{}.{}", path, field.name);
+    require(problems, field.range.contains(value) && std::isfinite(value),
+            {.id = "*.range"_family.of(key),
+             .key = key,
+             .value = std::isfinite(value) ? write_quantity(value, field.unit) : fmt::format("{}", value),
+             .rule = fmt::format("must lie in {}", describe(field.range, field.unit)),
+             .way_out = field.help});
+  }
+}
+
+template <class AnyLaw>
+void check_law(const AnyLaw& law, const CalibrationBox&, Problems& problems) {
+  check_fields(law, fmt::format("friction.{}", About<AnyLaw>::id), problems);
+}
+
+void check_law(const Renard& law, const CalibrationBox&, Problems& problems) {
+  check_fields(law, "friction.renard", problems);
+  require(problems, law.first_speed < law.second_speed,
+          {.id = "friction.renard.order"_rule,
+           .key = "friction.renard.second_speed",
+           .value = fmt::format("{} m/s", law.second_speed),
+           .rule = fmt::format("must lie above the first speed, {} m/s", law.first_speed),
+           .way_out = "mu rises up to the first speed and falls up to the second."});
+}
+
+void check_law(const HerseyTable& law, const CalibrationBox&, Problems& problems) {
+  require(problems, !law.curve.empty(),
+          {.id = "friction.hersey_table.empty"_rule,
+           .key = "friction.table",
+           .value = "",
+           .rule = "must hold pairs of Hersey number and coefficient",
+           .way_out = "Read it with columns hersey_number and friction_coefficient."});
+}
+
+void check_rheology(const Rheology& rheology, Problems& problems) {
+  std::visit(
+      [&]<class F>(const F& flow) {
+        check_fields(flow, fmt::format("resin.{}", About<F>::id), problems);
+        if constexpr (std::is_same_v<F, CarreauYasuda>)
+          require(problems, flow.infinite_viscosity < flow.zero_viscosity,
+                  {.id = "resin.carreau_yasuda.order"_rule,
+                   .key = "resin.carreau_yasuda.infinite_viscosity",
+                   .value = fmt::format("{} Pa s", flow.infinite_viscosity),
+                   .rule = fmt::format("must lie below the zero viscosity, {} Pa s", flow.zero_viscosity),
+                   .way_out = "A melt thins with rate; 0 Pa s is usual."});
+      },
+      rheology.flow);
+  std::visit(
+      [&]<class T>(const T& law) { check_fields(law, fmt::format("resin.{}", About<T>::id), problems); },
+      rheology.temperature);
+}
+
 void check_box(const CalibrationBox& box, Problems& problems) {
   const auto ordered = [](double low, double high) { return 0.0 <= low && low <= high; };
   require(problems,
@@ -118,6 +183,11 @@ void check_box(const CalibrationBox& box, Problems& problems) {
                                 box.pressure_low, box.pressure_high, box.speed_low, box.speed_high),
            .rule = "must satisfy 0 <= low <= high for each",
            .way_out = "The box is the range of the friction tests behind the law."});
+}
+
+template <class Effect>
+void check_effect(const Effect& effect, Problems& problems) {
+  check_fields(effect, fmt::format("effects.{}", About<Effect>::id), problems);
 }
 
 void check_effect(const ToolTemperatureShift& effect, Problems& problems) {
@@ -139,10 +209,17 @@ void check_effect(const ToolTemperatureShift& effect, Problems& problems) {
 
 Problems check(const Model& model) {
   Problems problems;
-  if (!std::holds_alternative<Coulomb>(model.law)) check_film(model.film, problems);
+  if (reads_hersey_number(model.law)) {
+    check_film(model.film, problems);
+    check_rheology(model.rheology, problems);
+  }
   std::visit([&](const auto& law) { check_law(law, model.box, problems); }, model.law);
   check_box(model.box, problems);
-  if (model.effects.tool_temperature_shift) check_effect(*model.effects.tool_temperature_shift, problems);
+  for_each_effect(model.effects, [&](const auto& effect) {
+    if (effect) check_effect(*effect, problems);
+  });
+  const Problems refused = check_combinations(model);
+  problems.insert(problems.end(), refused.begin(), refused.end());
   return problems;
 }
 

@@ -11,15 +11,31 @@ Context contact_of(const FrictionTestRow& row, const FrictionRig& rig, const Are
   Context context{.slip_speed = row.velocity,
                   .pressure = row.normal_force / rig.plate_area,
                   .fabric_temperature = row.fabric_temperature,
-                  .tool_temperature = row.tool_temperature};
+                  .tool_temperature = row.tool_temperature,
+                  .slip_angle = row.orientation};
   if (area) std::tie(context.area_fraction, context.area_slope) = area(context.pressure);
   return context;
+}
+
+ContactState state_after_pull(const Model& model, const Context& context, const FrictionRig& rig) {
+  if (!has_memory(model)) return {};
+  // Speed and load are constant, where the memory is advanced exactly: one step each is enough.
+  Context rest = context, pull = context;
+  rest.slip_speed = 0.0;
+  rest.time_step = rig.dwell_before;
+  pull.time_step = rig.pull_length / context.slip_speed;
+  ContactState state = evaluate_unchecked(model, rest, {}).state;
+  state.dwell += rest.time_step;
+  state = evaluate_unchecked(model, pull, state).state;
+  state.dwell += pull.time_step;
+  state.slip += rig.pull_length;
+  return state;
 }
 
 FrictionTestResult run_friction_test(const Model& model, const FrictionTestRow& row, const FrictionRig& rig,
                                      const AreaFunction& area) {
   const Context context = contact_of(row, rig, area);
-  const Friction friction = evaluate(model, context, {});
+  const Friction friction = evaluate(model, context, state_after_pull(model, context, rig));
   FrictionTestResult result{.mu = friction.mu,
                             .pull_force = 2.0 * friction.mu * row.normal_force,
                             .context = context,

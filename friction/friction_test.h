@@ -19,17 +19,21 @@ struct FrictionRig {
   /// the law is calibrated with it; the law at another pressure does, so reports carry the band.
   double plate_area = 0.01;
   std::array<double, 2> plate_area_band{0.005, 0.02};  ///< {low, high} [m^2]
+  /// Slip at which a force is read, and rest under load before it [m, s]. ASSUMED: what the paper calls the
+  /// pull force is taken as steady. Only laws and effects with memory see them.
+  double pull_length = 0.05;
+  double dwell_before = 0.0;
 };
 
 /// One pull, and what was measured. SI units.
 struct FrictionTestRow {
   std::string name;
-  double velocity = 0.0;                    ///< U [m/s]
-  double normal_force = 0.0;                ///< N [N]
-  double tool_temperature = 358.15;         ///< [K]
-  double fabric_temperature = 453.15;       ///< [K]
-  double orientation = 0.0;                 ///< warp against the pull [rad]; kept for reports, no law uses it
-  std::optional<double> measured_force;     ///< F [N]
+  double velocity = 0.0;                 ///< U [m/s]
+  double normal_force = 0.0;             ///< N [N]
+  double tool_temperature = 358.15;      ///< [K]
+  double fabric_temperature = 453.15;    ///< [K]
+  double orientation = 0.0;              ///< warp against the pull [rad]; only the orientation effect sees it
+  std::optional<double> measured_force;  ///< F [N]
   std::optional<double> paper_model_force;  ///< F of the paper's own finite-element model [N]
 };
 
@@ -48,6 +52,9 @@ struct FrictionTestResult {
 
 /// The contact under one plate: p = N / A.
 Context contact_of(const FrictionTestRow& row, const FrictionRig& rig, const AreaFunction& area = {});
+
+/// What the contact has gone through when the force is read: rest, then a pull at the row's speed and load.
+ContactState state_after_pull(const Model& model, const Context& context, const FrictionRig& rig);
 
 /// The friction test at the level of the law: both faces slide, so F = 2 mu N (paper, Eq. 2).
 FrictionTestResult run_friction_test(const Model& model, const FrictionTestRow& row, const FrictionRig& rig,

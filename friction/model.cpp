@@ -5,6 +5,7 @@
 #include <cmath>
 #include <stdexcept>
 #include <string>
+#include <type_traits>
 
 #include "friction/hersey.h"
 
@@ -12,16 +13,17 @@ namespace heddle::friction {
 
 namespace {
 
-Friction unshifted(const Coulomb& law, const Model&, const Context&) {
-  Friction result;
-  result.mu = law.coefficient;
-  return result;
-}
+/// What is the same for every point of a batch.
+struct Plan {
+  explicit Plan(const Model& model)
+      : stages(stages_of(model.effects)), own_film(stages.film || !model.rheology.of_the_film()) {}
+  EffectStages stages;
+  bool own_film;  ///< the Hersey number is not the one of friction/hersey.h
+};
 
 /// The chain rule in plain sight: mu(ln Hs(U, p, T)).
-template <class HerseyLaw>
-Friction unshifted(const HerseyLaw& law, const Model& model, const Context& context) {
-  const HerseyNumber hersey = hersey_number(model.film, context);
+template <HerseyLaw AnyLaw>
+Friction on_hersey_number(const AnyLaw& law, const Model& model, const HerseyNumber& hersey) {
   const auto [mu, dmu_dlog_hersey] = law_value(law, hersey.value, model.box);
   Friction result;
   result.mu = mu;
@@ -36,6 +38,92 @@ Friction unshifted(const HerseyLaw& law, const Model& model, const Context& cont
   return result;
 }
 
+/// The same on a film that effects or another rheology changed.
+template <HerseyLaw AnyLaw>
+Friction on_film(const AnyLaw& law, const Model& model, const FilmState& film) {
+  const auto [mu, dmu_dlog_hersey] = law_value(law, film.hersey.value, model.box);
+  Friction result;
+  set_coefficient(result, film.hersey.mapped(mu, dmu_dlog_hersey / film.hersey.value));
+  result.hersey = film.hersey.value;
+  result.film_viscosity = film.viscosity.value;
+  result.convex = dmu_dlog_hersey >= 0.0;
+  return result;
+}
+
+Friction on_point(const Coulomb& law, const Inputs&) {
+  Friction result;
+  result.mu = law.coefficient;
+  return result;
+}
+
+template <class AnyLaw>
+Friction on_point(const AnyLaw& law, const Inputs& inputs) {
+  Friction result;
+  set_coefficient(result, coefficient(law, inputs));
+  result.convex = result.dmu_dspeed >= 0.0;
+  return result;
+}
+
+Sensitive sensitive(const HerseyNumber& hersey) {
+  Sensitive result(1.0);
+  result.slope[static_cast<std::size_t>(Variable::slip_speed)] = hersey.dlog_dspeed;
+  result.slope[static_cast<std::size_t>(Variable::pressure)] = hersey.dlog_dpressure;
+  result.slope[static_cast<std::size_t>(Variable::fabric_temperature)] = hersey.dlog_dfabric_temperature;
+  return hersey.value * result;
+}
+
+void shift(const Model& model, const Context& context, Friction& friction) {
+  const auto& effect = model.effects.tool_temperature_shift;
+  if (is_on(effect)) apply(*effect, context, friction);
+}
+
+/// A total slope of either sign decides; where it vanishes (at rest), the law's own.
+void flag_falling(Friction& friction) {
+  if (friction.dmu_dspeed != 0.0) friction.convex = friction.dmu_dspeed > 0.0;
+}
+
+/// Everything but the state: the plain chain without memory of a batch's common case first.
+template <class AnyLaw>
+Friction coefficient_at(const AnyLaw& law, const Model& model, const Plan& plan, const Context& context,
+                        const ContactState& state) {
+  if constexpr (std::is_same_v<AnyLaw, Coulomb>) {
+    if (!plan.stages.coefficient) {
+      Friction result;
+      result.mu = law.coefficient;
+      shift(model, context, result);
+      return result;
+    }
+  }
+  if constexpr (HerseyLaw<AnyLaw>) {
+    if (!plan.own_film) {
+      const HerseyNumber hersey = hersey_number(model.film, context);
+      Friction result = on_hersey_number(law, model, hersey);
+      shift(model, context, result);
+      if (!plan.stages.coefficient) return result;
+      const Inputs inputs(context, state);
+      apply_to_coefficient(model.effects, inputs, inputs.area_fraction, sensitive(hersey), result);
+      flag_falling(result);
+      return result;
+    }
+  }
+  const Inputs inputs(context, state);
+  const Sensitive area = contact_area(model.effects, inputs);
+  Sensitive hersey;
+  Friction result;
+  if constexpr (HerseyLaw<AnyLaw>) {
+    const FilmState film = film_state(model.effects, model.rheology, model.film, inputs, area);
+    result = on_film(law, model, film);
+    result.state.film_temperature = film.temperature.value;
+    hersey = film.hersey;
+  } else {
+    result = on_point(law, inputs);
+  }
+  shift(model, context, result);
+  if (plan.stages.coefficient) apply_to_coefficient(model.effects, inputs, area, hersey, result);
+  flag_falling(result);
+  return result;
+}
+
 std::string describe(const Context& c) {
   return fmt::format(
       "slip speed {} m/s, pressure {} Pa, fabric {} K, tool {} K, area fraction {}, area slope {} 1/Pa",
@@ -45,8 +133,9 @@ std::string describe(const Context& c) {
 [[noreturn]] void report_fault(const Friction& f, const Context& context, std::size_t point) {
   if (f.mu < 0.0) {
     throw NumericalError(fmt::format(
-        "friction point {}: mu = {} is negative ({}). The tool temperature shift outweighs the law here; use "
-        "effects.tool_temperature_shift.form: factor, or a smaller slope.",
+        "friction point {}: mu = {} is negative ({}). The tool temperature shift, or another term that takes "
+        "from mu, outweighs the law here; use effects.tool_temperature_shift.form: factor, or a smaller "
+        "slope.",
         point, f.mu, describe(context)));
   }
   throw NumericalError(
@@ -63,20 +152,30 @@ bool sound(const Friction& f) {
 }
 
 template <class AnyLaw>
-Friction evaluate_point(const AnyLaw& law, const Model& model, const Context& context,
-                        const ContactState& state, std::size_t point) {
-  Friction result = unshifted(law, model, context);
-  apply(model.effects, context, result);
+Friction evaluate_point(const AnyLaw& law, const Model& model, const Plan& plan, const Context& context,
+                        const ContactState& state) {
+  Friction result = coefficient_at(law, model, plan, context, state);
+  const double film_temperature = result.state.film_temperature;
   result.state = state;
-  if (!sound(result)) report_fault(result, context, point);
+  if (plan.own_film && HerseyLaw<AnyLaw>) result.state.film_temperature = film_temperature;
+  if (plan.stages.coefficient) advance(model.effects, context, result.state);
+  if constexpr (std::is_same_v<AnyLaw, SlipResistance>)
+    result.state.slip_resistance = slip_resistance_after(law, context, state);
   return result;
 }
 
 }  // namespace
 
-Friction evaluate(const Model& model, const Context& context, const ContactState& state) {
-  return std::visit([&](const auto& law) { return evaluate_point(law, model, context, state, 0); },
+Friction evaluate_unchecked(const Model& model, const Context& context, const ContactState& state) {
+  const Plan plan(model);
+  return std::visit([&](const auto& law) { return evaluate_point(law, model, plan, context, state); },
                     model.law);
+}
+
+Friction evaluate(const Model& model, const Context& context, const ContactState& state) {
+  const Friction result = evaluate_unchecked(model, context, state);
+  if (!sound(result)) report_fault(result, context, 0);
+  return result;
 }
 
 void evaluate(const Model& model, std::span<const Context> contexts, std::span<const ContactState> states,
@@ -84,13 +183,20 @@ void evaluate(const Model& model, std::span<const Context> contexts, std::span<c
   if (states.size() != contexts.size() || out.size() != contexts.size()) {
     throw std::invalid_argument("friction::evaluate: contexts, states and out differ in size");
   }
+  const Plan plan(model);
   std::visit(
       [&](const auto& law) {
         for (std::size_t i = 0; i < contexts.size(); ++i) {
-          out[i] = evaluate_point(law, model, contexts[i], states[i], i);
+          out[i] = evaluate_point(law, model, plan, contexts[i], states[i]);
+          if (!sound(out[i])) report_fault(out[i], contexts[i], i);
         }
       },
       model.law);
+}
+
+bool has_memory(const Model& model) {
+  return std::holds_alternative<StaticKinetic>(model.law) ||
+         std::holds_alternative<SlipResistance>(model.law) || has_memory(model.effects);
 }
 
 Traction traction(const Model& model, const Context& context, const ContactState& state) {

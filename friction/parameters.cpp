@@ -1,7 +1,10 @@
 #include "friction/parameters.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
+#include <stdexcept>
 
 #include "friction/hersey.h"
 
@@ -20,6 +23,15 @@ std::vector<Parameter> law_parameters(const HerseyLinear& law) {
   return {{"friction.offset", "", law.offset, false, false}, {"friction.slope", "", law.slope, true, false}};
 }
 
+template <class AnyLaw>
+std::vector<Parameter> law_parameters(const AnyLaw& law) {
+  std::vector<Parameter> list;
+  for (const Field<AnyLaw>& field : About<AnyLaw>::fields)
+    list.push_back({fmt::format("friction.{}.{}", About<AnyLaw>::id, field.name), field.unit,
+                    law.*(field.member), HerseyLaw<AnyLaw> && !list.empty(), false});
+  return list;
+}
+
 std::size_t set_law(Coulomb& law, const std::vector<double>& values) {
   law.coefficient = values[0];
   return 1;
@@ -33,6 +45,13 @@ std::size_t set_law(HerseyLinear& law, const std::vector<double>& values) {
   law.offset = values[0];
   law.slope = values[1];
   return 2;
+}
+
+template <class AnyLaw>
+std::size_t set_law(AnyLaw& law, const std::vector<double>& values) {
+  std::size_t next = 0;
+  for (const Field<AnyLaw>& field : About<AnyLaw>::fields) law.*(field.member) = values[next++];
+  return next;
 }
 
 ParameterSlopes law_slopes(const Coulomb& law, const Model&, const Context&) {
@@ -62,6 +81,53 @@ ParameterSlopes law_slopes(const HerseyLinear& law, const Model& model, const Co
           .dmu_dlog_hersey = dmu_dlog_hersey,
           .dmu_dparameter = {power * (1.0 - k * log_x),
                              power * (1.0 + (1.0 - k) * log_x) * edge / law.reference}};
+}
+
+template <class AnyLaw>
+ParameterSlopes law_slopes(const AnyLaw&, const Model&, const Context&) {
+  throw std::logic_error("friction::parameter_slopes: a law without slopes of its own");  // see exact()
+}
+
+/// Whether law_slopes and shift below say it all.
+bool exact(const Model& model) {
+  const EffectStages stages = stages_of(model.effects);
+  const bool known = std::holds_alternative<Coulomb>(model.law) ||
+                     std::holds_alternative<HerseyPower>(model.law) ||
+                     std::holds_alternative<HerseyLinear>(model.law);
+  return known && model.rheology.of_the_film() && !stages.film && !stages.coefficient;
+}
+
+/// (f(+step) - f(-step)) / (2 step)
+template <class Function>
+double central(const Function& f, double step) {
+  return (f(step) - f(-step)) / (2.0 * step);
+}
+
+ParameterSlopes differences(const Model& model, const Context& context, const ContactState& state) {
+  ParameterSlopes slopes{
+      .mu = evaluate_unchecked(model, context, state).mu, .dmu_dlog_hersey = 0.0, .dmu_dparameter = {}};
+  // Hs is proportional to the area fraction.
+  const auto with_area = [&](double log_area) {
+    Context changed = context;
+    changed.area_fraction *= std::exp(log_area);
+    changed.area_slope *= std::exp(log_area);
+    return evaluate_unchecked(model, changed, state).mu;
+  };
+  if (reads_hersey_number(model.law)) slopes.dmu_dlog_hersey = central(with_area, 1e-5);
+  const std::vector<Parameter> parameters = parameters_of(model);
+  std::vector<double> values;
+  for (const Parameter& parameter : parameters) values.push_back(parameter.value);
+  for (std::size_t j = 0; j < values.size(); ++j) {
+    const auto with_value = [&](double change) {
+      std::vector<double> changed = values;
+      changed[j] += change;
+      Model other = model;
+      set_parameters(other, changed);
+      return evaluate_unchecked(other, context, state).mu;
+    };
+    slopes.dmu_dparameter.push_back(central(with_value, 1e-5 * std::max(std::abs(values[j]), 1e-4)));
+  }
+  return slopes;
 }
 
 /// As effects.cpp does it to mu, here to the slopes as well.
@@ -95,7 +161,8 @@ void set_parameters(Model& model, const std::vector<double>& values) {
   if (auto& effect = model.effects.tool_temperature_shift) effect->slope = values[next];
 }
 
-ParameterSlopes parameter_slopes(const Model& model, const Context& context) {
+ParameterSlopes parameter_slopes(const Model& model, const Context& context, const ContactState& state) {
+  if (!exact(model)) return differences(model, context, state);
   ParameterSlopes slopes =
       std::visit([&](const auto& law) { return law_slopes(law, model, context); }, model.law);
   if (const auto& effect = model.effects.tool_temperature_shift) shift(*effect, context, slopes);

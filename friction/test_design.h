@@ -20,7 +20,7 @@ struct TestDesign {
 /// The baseline, then each factor at each of its other levels.
 std::vector<FrictionTestRow> one_at_a_time(const TestDesign& design);
 
-/// Every combination of the levels that a law reads (orientation stays at its baseline).
+/// Every combination of the levels of speed, load and temperatures; orientation stays at its baseline.
 std::vector<FrictionTestRow> all_combinations(const TestDesign& design);
 
 /// Reads a design: header `parameter,unit,baseline,additional`, one line a factor, additional levels

@@ -3,7 +3,9 @@
 #include <algorithm>
 #include <array>
 #include <span>
+#include <tuple>
 #include <type_traits>
+#include <utility>
 
 #include <fmt/format.h>
 
@@ -97,15 +99,21 @@ std::vector<std::array<double, N>> read_rows(const Hdf5Reader& file, const std::
   return rows_of<N>(file.doubles(path), path);
 }
 
-static_assert(sizeof(friction::ContactState) == 5 * sizeof(double),
+template <class Memory>
+auto memory_members(Memory& m) {
+  return std::tie(m.slip, m.dwell, m.work_per_area, m.slip_resistance, m.film_temperature, m.age,
+                  m.load_slip);
+}
+constexpr std::size_t memory_size =
+    std::tuple_size_v<decltype(memory_members(std::declval<friction::ContactState&>()))>;
+static_assert(sizeof(friction::ContactState) == memory_size * sizeof(double),
               "ContactState has changed: keep its new members");
-constexpr std::size_t memory_size = 5;
 
 std::vector<double> flat_memory(const State& state) {
   std::vector<double> flat;
   for (const auto& of_tool : state.memory)
     for (const friction::ContactState& m : of_tool)
-      flat.insert(flat.end(), {m.slip, m.dwell, m.work_per_area, m.slip_resistance, m.film_temperature});
+      std::apply([&](const auto&... member) { (flat.push_back(member), ...); }, memory_members(m));
   return flat;
 }
 
@@ -136,8 +144,9 @@ State read_state(const Hdf5Reader& file, const std::string& group) {
   for (std::size_t k = 0; k < tools; ++k) {
     auto& of_tool = state.memory.emplace_back();
     for (std::size_t i = 0; i < nodes; ++i) {
-      const auto& m = flat[k * nodes + i];
-      of_tool.push_back({m[0], m[1], m[2], m[3], m[4]});
+      std::size_t c = 0;
+      std::apply([&](auto&... member) { ((member = flat[k * nodes + i][c++]), ...); },
+                 memory_members(of_tool.emplace_back()));
     }
   }
   return state;
@@ -180,7 +189,8 @@ BlankState read_shared(const Hdf5Reader& file, const std::string& group) {
   blank.quads = read_index_rows<4>(file, group + "/quads");
   const auto piece_quad = file.integers(group + "/piece_quad");
   const auto piece_corners = read_rows<8>(file, group + "/piece_corners");
-  if (piece_quad.size() != piece_corners.size()) throw Hdf5Error(group + "/piece_corners has the wrong length");
+  if (piece_quad.size() != piece_corners.size())
+    throw Hdf5Error(group + "/piece_corners has the wrong length");
   for (std::size_t k = 0; k < piece_quad.size(); ++k) {
     CellPiece piece{piece_quad[k], {}};
     for (std::size_t c = 0; c < 8; ++c) piece.corners[c / 2][c % 2] = piece_corners[k][c];
@@ -283,8 +293,8 @@ std::string fault_of(const StampingCheckpoint& c, const Blank& blank, int steps)
   const std::size_t nodes = static_cast<std::size_t>(blank.nodes());
   const auto unknowns = static_cast<Eigen::Index>(3 * nodes + loaded);
   const bool fits = c.state.x.size() == unknowns && c.state.v.size() == unknowns &&
-                    c.state.tool_z.size() == tools &&
-                    c.state.corner_angle.size() == 4 * blank.quads.size() && c.state.memory.size() == tools &&
+                    c.state.tool_z.size() == tools && c.state.corner_angle.size() == 4 * blank.quads.size() &&
+                    c.state.memory.size() == tools &&
                     std::all_of(c.state.memory.begin(), c.state.memory.end(),
                                 [&](const auto& m) { return m.size() == nodes; });
   if (!fits) return "its state is of another blank or other tools";

@@ -32,6 +32,21 @@ friction::Context context_of(const Scene& scene, double pressure, double shear_a
   return context;
 }
 
+// Slip direction against the warp, both in the tangent plane of the contact [rad]; 0 at rest.
+double slip_angle(const Scene& scene, const VectorXd& x, int node, const Vector3d& normal,
+                  const Vector3d& v) {
+  const Blank& blank = scene.blank;
+  const auto [i, j] = blank.grid[node];
+  const auto neighbour = [&](int line) {
+    const int n = line < 0 || line > blank.nu ? -1 : blank.node(line, j);
+    return n < 0 ? node : n;
+  };
+  const int before = neighbour(i - 1), after = neighbour(i + 1);
+  const Vector3d tow = x.segment<3>(3 * after) - x.segment<3>(3 * before);
+  const Vector3d warp = tow - normal.dot(tow) * normal, slip = v - normal.dot(v) * normal;
+  return std::atan2(normal.dot(warp.cross(slip)), warp.dot(slip));
+}
+
 using FrictionPoints = std::vector<std::vector<FrictionPoint>>;
 
 // Loads, normals and contexts of all points at x: what the next pass holds.
@@ -51,6 +66,9 @@ FrictionPoints freeze(const System& system, const StepData& step, const VectorXd
       // A distance interpolated from samples has a gradient of length about 1: slip needs a true projection.
       point.normal = d.normal.normalized();
       point.context = context_of(scene, contact.pressure, shear_angle[i]);
+      point.context.time_step = step.dt;
+      point.context.slip_angle =
+          slip_angle(scene, x, i, point.normal, system.relative_velocity(step, x, k, i));
     });
   return points;
 }
@@ -139,9 +157,9 @@ Direction newton_direction(System& system, const StepData& step, const VectorXd&
   return direction;
 }
 
-// Steps along the factors of the last iteration, as long as each halves the residual: a back-substitution costs
-// a fraction of a factorisation, and far below the tolerance the result no longer depends on the iteration at
-// which a search happened to end. (Slopes to small parameters are taken as differences of runs.)
+// Steps along the factors of the last iteration, as long as each halves the residual: a back-substitution
+// costs a fraction of a factorisation, and far below the tolerance the result no longer depends on the
+// iteration at which a search happened to end. (Slopes to small parameters are taken as differences of runs.)
 void polish(System& system, const StepData& step, VectorXd& x, VectorXd g, StepSummary& summary) {
   constexpr int most = 3;
   for (int k = 0; k < most; ++k) {

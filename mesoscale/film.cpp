@@ -70,7 +70,7 @@ void check_spec(const FilmSpec& spec) {
   Problems problems;
   const auto require = [&](bool holds, const char* key, double value, const char* rule, const char* way_out) {
     if (!holds)
-      problems.push_back({"*.range"_family.of(fmt::format("film.{}", key)), key, fmt::format("{}", value), rule, way_out});
+      problems.push_back({"film.*.range"_family.of(key), key, fmt::format("{}", value), rule, way_out});
   };
   int samples = spec.samples;
   while (samples > coarsest && samples % 2 == 0) samples /= 2;

@@ -9,10 +9,12 @@
 #include "core/text_file.h"
 #include "core/units.h"
 #include "friction/calibrate.h"
+#include "friction/combinations.h"
 #include "friction/test_design.h"
 #include "macroscale/outline_file.h"
 #include "macroscale/tool_loading.h"
 #include "macroscale/tool_set.h"
+#include "pipeline/friction_keys.h"
 #include "pipeline/outputs.h"
 
 namespace heddle::pipeline {
@@ -108,7 +110,8 @@ friction::PowerLawFilm film_of(const Settings& settings) {
   return film;
 }
 
-friction::Law law_of(const Settings& settings) {
+friction::Law law_of(const Settings& settings, const std::filesystem::path& folder) {
+  if (auto law = further_law_of(settings, folder)) return *std::move(law);
   if (settings.is("friction.law", "coulomb")) {
     friction::Coulomb law;
     take(settings, "friction.coefficient", law.coefficient);
@@ -135,6 +138,7 @@ bool slope_is_fitted(const Settings& settings) {
 
 friction::Effects effects_of(const Settings& settings) {
   friction::Effects effects;
+  take_effects(settings, effects);
   if (settings.blocks.count(shift_path) == 0) return effects;
   friction::ToolTemperatureShift shift;
   if (!slope_is_fitted(settings)) take(settings, shift_path + ".slope", shift.slope);
@@ -152,8 +156,13 @@ macroscale::ContactPressure contact_pressure_of(const Settings& settings) {
 
 FrictionSpec friction_of(const Settings& settings, const std::filesystem::path& folder) {
   FrictionSpec friction;
-  friction.model.law = law_of(settings);
+  try {
+    friction.model.law = law_of(settings, folder);
+  } catch (const InputError& error) {
+    friction.table_problems = error.problems();
+  }
   friction.model.film = film_of(settings);
+  friction.model.rheology = rheology_of(settings);
   friction.model.effects = effects_of(settings);
   friction.contact_pressure = contact_pressure_of(settings);
   const std::string area = "friction.calibration.plate_area";
@@ -281,11 +290,16 @@ void append_new(Problems& problems, const Problems& more) {
   });
 }
 
-/// A model whose constants are still to be fitted has only its film and effects to check.
+/// A model whose constants are still to be fitted, or whose table could not be read, has only its film and
+/// effects to check.
 Problems check_friction_model(const FrictionSpec& spec) {
   friction::Model model = spec.model;
-  if (spec.calibrated()) model.law = friction::HerseyPower{.scale = 1.0, .exponent = 0.1};
-  return friction::check(model);
+  const bool has_law = spec.table_problems.empty();
+  if (spec.calibrated() || !has_law) model.law = friction::HerseyPower{.scale = 1.0, .exponent = 0.1};
+  Problems problems = spec.table_problems;
+  append_new(problems, friction::check(model));
+  if (has_law) append_new(problems, friction::check_combinations(spec.model));
+  return problems;
 }
 
 /// Constants given beside a table that would fit them: which of the two counts would be a guess.
@@ -501,8 +515,9 @@ std::string friction_line(const FrictionSpec& friction) {
     return fmt::format("friction: Coulomb, mu = {}",
                        std::get<friction::Coulomb>(friction.model.law).coefficient);
   }
-  const bool linear = std::holds_alternative<friction::HerseyLinear>(friction.model.law);
-  return fmt::format("friction: Stribeck law, {} form, {}, {}", linear ? "linear" : "power", pressure,
+  if (!friction::reads_hersey_number(friction.model.law))
+    return fmt::format("friction: {} law, constants as given", friction::id_of(friction.model.law));
+  return fmt::format("friction: Stribeck law, {} form, {}, {}", friction::id_of(friction.model.law), pressure,
                      friction.calibrated() ? "fitted to friction.calibration.data" : "constants as given");
 }
 

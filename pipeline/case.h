@@ -23,6 +23,7 @@ struct FrictionSpec {
   std::filesystem::path calibration_data;  ///< empty: the constants of the law were given
   mesoscale::WeaveSpec calibration_weave;  ///< of the fabric that was pulled; Table 1 unless given
   bool fit_temperature_slope = false;      ///< `slope: fitted`; else the slope in the model is held
+  Problems table_problems;                 ///< of the table of a law, where it could not be read
   bool calibrated() const { return !calibration_data.empty(); }
 };
 

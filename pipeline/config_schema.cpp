@@ -7,6 +7,7 @@
 #include <stdexcept>
 
 #include "core/units.h"
+#include "pipeline/friction_keys.h"
 
 namespace heddle::pipeline {
 namespace {
@@ -98,14 +99,13 @@ std::vector<Key> calibration_weave_keys() {
 std::vector<Key> resin_keys() {
   return {
       {.path = "resin.rheology", .type = KeyType::choice, .presence = defaulted, .default_text = "power_law",
-       .choices = {"power_law"},
-       .help = "Viscosity law of the melt (paper, Eq. 4)."},
+       .choices = {"power_law", "bingham", "herschel_bulkley", "carreau_yasuda", "cross"},
+       .help = "Viscosity law of the film (paper, Eq. 4: power_law); the melt between the tows keeps the power law."},
       {.path = "resin.consistency", .type = KeyType::quantity, .unit = "Pa s^n", .presence = defaulted,
-       .default_text = "6790 Pa s^n", .range = "(0 Pa s^n, )", .used_when = "resin.rheology=power_law",
+       .default_text = "6790 Pa s^n", .range = "(0 Pa s^n, )",
        .help = "m at the reference temperature; prior: polypropylene at 180 degC (Tadmor & Gogos)."},
       {.path = "resin.power_index", .type = KeyType::quantity, .presence = defaulted, .default_text = "0.38",
-       .range = "(0, 1]", .used_when = "resin.rheology=power_law",
-       .help = "n; polypropylene melts lie at 0.37 to 0.41. Never fitted to friction."},
+       .range = "(0, 1]", .help = "n; polypropylene melts lie at 0.37 to 0.41. Never fitted to friction."},
       {.path = "resin.film_thickness", .type = KeyType::quantity, .unit = "mm", .presence = defaulted,
        .default_text = "0.07 mm", .range = "(0 mm, 10 mm)", .help = "h of Eq. 5 (paper, section 2)."},
       {.path = "resin.activation_energy", .type = KeyType::quantity, .unit = "kJ/mol", .presence = defaulted,
@@ -150,13 +150,16 @@ std::vector<Key> friction_keys() {
   const std::string stribeck = "friction.law=stribeck";
   const std::string direct_power = stribeck + " friction.form=power !friction.calibration.data";
   const std::string direct_linear = stribeck + " friction.form=linear !friction.calibration.data";
+  std::vector<std::string> laws = further_laws(), forms = further_forms();
+  laws.insert(laws.begin(), {"stribeck", "coulomb"});
+  forms.insert(forms.begin(), {"power", "linear"});
   return {
-      {.path = "friction.law", .type = KeyType::choice, .presence = required, .choices = {"stribeck", "coulomb"}, .stage = friction,
-       .help = "stribeck: mu follows the Hersey number; coulomb: mu is constant."},
+      {.path = "friction.law", .type = KeyType::choice, .presence = required, .choices = laws, .stage = friction,
+       .help = "stribeck: mu follows the Hersey number; coulomb: mu is constant; the others: docs/theory/friction.md."},
       {.path = "friction.coefficient", .type = KeyType::quantity, .presence = required, .range = "[0, 10)",
        .stage = friction, .used_when = "friction.law=coulomb", .help = "mu of the Coulomb law."},
       {.path = "friction.form", .type = KeyType::choice, .presence = defaulted, .default_text = "power",
-       .choices = {"power", "linear"}, .stage = friction,
+       .choices = forms, .stage = friction,
        .used_when = stribeck,
        .help = "power: mu = C Hs^s; linear: mu = a + b Hs/Hs0, which grows without bound at low pressure."},
       {.path = "friction.contact_pressure", .type = KeyType::choice, .presence = defaulted, .default_text = "real",
@@ -326,13 +329,12 @@ std::vector<Key> effect_keys() {
        .help = "term: mu + slope (T - reference); factor: mu (1 + slope (T - reference))."},
   };
   const std::vector<std::string> to_come{
-      "tool_temperature_film", "static_peak", "sliding_evolution", "stick_slip", "pressure_dependent_area",
-      "orientation", "adhesion", "film_squeeze_out", "dwell_ageing", "solidification", "shear_heating",
-      "wear", "viscosity_plateau", "boundary_lubrication", "shear_rate", "shear_locking",
+      "shear_rate", "shear_locking",
       "tension_shear_coupling", "bending", "tow_rate_stiffening", "inter_tow_slip", "crimp_straightening",
       "shear_thermal_softening", "binder_tilt", "punch_misalignment", "blank_cooling", "press_compliance",
       "inertia", "binder_force_level", "initial_orientation", "normal_force_relaxation", "load_cell_offset",
       "gain_drift", "drive_backlash", "nonuniform_pressure", "mislabelled_condition", "discretisation"};
+  append(keys, friction_effect_keys());
   for (const std::string& id : to_come) keys.push_back(later("effects." + id, "Effect of a later version."));
   return keys;
 }
@@ -364,8 +366,10 @@ std::vector<Key> all_keys() {
   std::vector<Key> keys = head_keys();
   append(keys, weave_keys());
   append(keys, resin_keys());
+  append(keys, rheology_keys());
   append(keys, forming_keys());
   append(keys, friction_keys());
+  append(keys, friction_law_keys());
   append(keys, calibration_weave_keys());
   append(keys, process_keys());
   append(keys, blank_keys());

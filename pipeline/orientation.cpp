@@ -279,6 +279,17 @@ FrictionTestRow pull(const Case& a_case, double angle, const mesoscale::FabricPr
   return sample;
 }
 
+std::string note_on_friction(const friction::Model& model) {
+  const std::string paper =
+      " The paper pulled samples from 0/90 to 90/0 and found relatively no effect of orientation (section "
+      "2).";
+  if (!friction::is_on(model.effects.orientation))
+    return "The effect `orientation` is off, so mu is the same at every angle by construction." + paper;
+  return fmt::format("The effect `orientation` is on: mu grows by {:g} sin^2(2 theta) of itself.",
+                     model.effects.orientation->amplitude) +
+         paper;
+}
+
 void print(const OrientationFindings& findings) {
   fmt::print("{:<12}{:>12}{:>14}{:>14}{:>12}{:>10}\n", "warp to x", "peak N", "max shear deg", "draw-in mm",
              "residual", "Newton");
@@ -411,11 +422,7 @@ int run_orientation_study(const RunOptions& options, Case a_case) {
     return 0;
   });
   folder.write("friction/friction_test.csv", friction_test_csv(findings.samples));
-  findings.notes.push_back(
-      "No friction law of this version holds an orientation, so mu is the same at every angle by "
-      "construction. "
-      "The paper pulled samples from 0/90 to 90/0 and found relatively no effect of orientation (section "
-      "2).");
+  findings.notes.push_back(note_on_friction(friction.model));
   findings.notes.push_back(
       fmt::format("Node spacing is at most {:g} mm here: angles compare with one another; the shipped case "
                   "gives the force "

@@ -5,11 +5,11 @@
 #include <limits>
 #include <optional>
 #include <tuple>
-#include <variant>
 #include <vector>
 
 #include <fmt/format.h>
 
+#include "pipeline/friction_store.h"
 #include "pipeline/outputs.h"
 
 namespace heddle::pipeline {
@@ -32,19 +32,6 @@ static_assert(sizeof(mesoscale::TowBodies) == 4 * sizeof(double));
 template <class Bodies>
 auto body_members(Bodies& b) {
   return std::tie(b.voxel, b.volume_error, b.overlap_share, b.overlap_depth);
-}
-
-static_assert(sizeof(friction::PowerLawFilm) == 6 * sizeof(double));
-template <class Film>
-auto film_members(Film& f) {
-  return std::tie(f.consistency, f.index, f.thickness, f.activation_energy, f.reference_temperature,
-                  f.rate_floor);
-}
-
-static_assert(sizeof(friction::CalibrationBox) == 6 * sizeof(double));
-template <class Box>
-auto box_members(Box& b) {
-  return std::tie(b.hersey_low, b.hersey_high, b.pressure_low, b.pressure_high, b.speed_low, b.speed_high);
 }
 
 static_assert(sizeof(FrictionCurveRow) == 7 * sizeof(double));
@@ -174,57 +161,6 @@ WeavePictures read_pictures(const Hdf5Reader& file) {
   triple("/voxels/spacing", voxels.spacing);
   for (const int label : labels) voxels.labels.push_back(static_cast<std::uint16_t>(label));
   return pictures;
-}
-
-// ---- the law
-
-std::vector<double> law_values(const friction::Law& law) {
-  struct Visitor {
-    std::vector<double> operator()(const friction::Coulomb& l) const { return {l.coefficient}; }
-    std::vector<double> operator()(const friction::HerseyPower& l) const { return {l.scale, l.exponent}; }
-    std::vector<double> operator()(const friction::HerseyLinear& l) const {
-      return {l.offset, l.slope, l.reference};
-    }
-  };
-  return std::visit(Visitor{}, law);
-}
-
-friction::Law law_of(int kind, const std::vector<double>& v) {
-  static_assert(std::variant_size_v<friction::Law> == 3, "a new law: keep its constants");
-  if (kind == 0 && v.size() == 1) return friction::Coulomb{v[0]};
-  if (kind == 1 && v.size() == 2) return friction::HerseyPower{v[0], v[1]};
-  if (kind == 2 && v.size() == 3) return friction::HerseyLinear{v[0], v[1], v[2]};
-  throw Hdf5Error("holds a friction law that is not known");
-}
-
-static_assert(sizeof(friction::Effects) == sizeof(std::optional<friction::ToolTemperatureShift>),
-              "a new effect: keep its parameters");
-
-void write_model(Hdf5Writer& file, const friction::Model& model) {
-  file.write("/law/kind", static_cast<int>(model.law.index()));
-  file.write("/law/constants", law_values(model.law));
-  write_row(file, "/film", film_members(model.film));
-  write_row(file, "/box", box_members(model.box));
-  if (const auto& shift = model.effects.tool_temperature_shift) {
-    file.write("/effects/tool_temperature_shift/numbers",
-               std::vector<double>{shift->slope, shift->reference});
-    file.write("/effects/tool_temperature_shift/form", static_cast<int>(shift->form));
-  }
-}
-
-friction::Model read_model(const Hdf5Reader& file) {
-  friction::Model model;
-  model.law = law_of(file.integer("/law/kind"), file.doubles("/law/constants"));
-  read_row(file, "/film", film_members(model.film));
-  read_row(file, "/box", box_members(model.box));
-  const std::string group = "/effects/tool_temperature_shift";
-  if (file.has(group + "/numbers")) {
-    friction::ToolTemperatureShift shift;
-    fill(std::tie(shift.slope, shift.reference), file.doubles(group + "/numbers"), 0, group);
-    shift.form = static_cast<friction::ToolTemperatureShift::Form>(file.integer(group + "/form"));
-    model.effects.tool_temperature_shift = shift;
-  }
-  return model;
 }
 
 // ---- rows

@@ -109,9 +109,9 @@ void add_design(FrictionStage& stage, const FrictionSpec& spec, const friction::
     low = std::min(low, result.mu);
     high = std::max(high, result.mu);
   }
-  stage.notes.push_back(
-      fmt::format("Over all {} combinations of the campaign's levels mu lies between {:.3f} and {:.3f}.",
-                  all.size(), low, high));
+  stage.notes.push_back(fmt::format(
+      "Over all {} combinations of the campaign's levels{} mu lies between {:.3f} and {:.3f}.", all.size(),
+      friction::is_on(stage.model.effects.orientation) ? ", at the first orientation," : "", low, high));
 }
 
 // mu against speed at the first test's temperatures, for three loads across the rig's range.
@@ -124,7 +124,8 @@ std::vector<FrictionCurveRow> curve_of(const FrictionStage& stage, const Frictio
     for (int k = 0; k <= 48; ++k) {
       row.velocity = 1e-4 * std::pow(10.0, k / 12.0);
       const auto context = friction::contact_of(row, spec.rig, area);
-      const auto law = friction::evaluate(stage.model, context, {});
+      const auto law = friction::evaluate(stage.model, context,
+                                          friction::state_after_pull(stage.model, context, spec.rig));
       curve.push_back({row.tool_temperature, row.fabric_temperature, context.pressure, row.velocity,
                        law.film_viscosity, law.hersey, law.mu});
     }

@@ -294,6 +294,9 @@ TEST_CASE("samples, fill and roughness outside their range are refused together"
     FilmBearing(table1(), law, 0.0, spec);
     FAIL("accepted");
   } catch (const InputError& error) {
-    CHECK(error.problems().size() == 3);
+    REQUIRE(error.problems().size() == 3);
+    CHECK(error.problems()[0].id == "film.samples.range");
+    CHECK(error.problems()[1].id == "film.fill.range");
+    CHECK(error.problems()[2].id == "film.roughness.range");
   }
 }

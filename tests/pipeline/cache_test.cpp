@@ -240,9 +240,9 @@ TEST_CASE("the key of a stage moves with what it reads and with nothing else", "
 TEST_CASE("the build hashes the sources as they stand", "[pipeline][cache]") {
   const fs::path root = HEDDLE_SOURCE_DIR;
   std::vector<std::string> files;
-  for (const auto& entry : fs::directory_iterator(root / "friction"))
+  for (const auto& entry : fs::recursive_directory_iterator(root / "friction"))
     if (entry.path().extension() == ".h" || entry.path().extension() == ".cpp")
-      files.push_back("friction/" + entry.path().filename().string());
+      files.push_back(fs::relative(entry.path(), root).string());
   std::sort(files.begin(), files.end());
   std::string text;
   for (const std::string& file : files) text += file + " " + sha256(pipeline::read_file(root / file)) + "\n";

@@ -12,6 +12,7 @@
 #include "core/units.h"
 #include "pipeline/case.h"
 #include "pipeline/config_reference.h"
+#include "pipeline/friction_keys.h"
 
 using namespace heddle;
 using pipeline::Case;
@@ -175,7 +176,10 @@ TEST_CASE("every default of the schema obeys its own rule", "[pipeline][config]"
     INFO(key.path << ": " << key.default_text);
     std::vector<std::string> assignments{key.path + "=" + key.default_text};
     if (key.path.starts_with("effects.")) {
-      assignments.insert(assignments.begin(), "effects.tool_temperature_shift.slope=0 1/K");
+      const std::string block = key.path.substr(0, key.path.rfind('.') + 1);
+      for (const pipeline::Key& other : pipeline::schema())
+        if (other.path.starts_with(block) && other.presence == pipeline::Presence::required)
+          assignments.insert(assignments.begin(), other.path + "=0 " + other.unit);
     }
     CHECK(format(problems_of(small_stamping, assignments)) == "");
   }
@@ -325,10 +329,19 @@ bool is_out_of_range(const std::string& path, const std::string& value,
 TEST_CASE("every range is refused beyond its ends, and no room finds a value within them out of range",
           "[pipeline][config]") {
   const std::string law = "friction={law: stribeck, calibration: {plate_area: 0.01 m^2}, ";
-  const std::vector<std::vector<std::string>> cases{
+  const std::string power = law + "scale: 0.5, exponent: 0.14}";
+  std::vector<std::vector<std::string>> cases{
       {"effects={tool_temperature_shift: {slope: 0 1/K}}"},
-      {law + "scale: 0.5, exponent: 0.14}"},
-      {law + "form: linear, offset: 0.1, slope: 0.1, reference_hersey: 1}"}};
+      {power},
+      {law + "form: linear, offset: 0.1, slope: 0.1, reference_hersey: 1}"},
+      {power, "resin.temperature_law=wlf"}};
+  for (const std::string& id : pipeline::further_laws()) cases.push_back({"friction={law: " + id + "}"});
+  for (const std::string& id : pipeline::further_forms())
+    if (id != "table") cases.push_back({law + "form: " + id + "}"});
+  for (const std::string& id : pipeline::find_key("resin.rheology")->choices)
+    cases.push_back({power, "resin.rheology=" + id});
+  for (const pipeline::Key& key : pipeline::friction_effect_keys())
+    if (key.presence == pipeline::Presence::required) cases.push_back({power, key.path + "=0 " + key.unit});
   std::set<std::string> tried;
   for (const auto& assignments : cases) {
     const Case base = read_case_text(small_stamping, "x.yaml", configs, assignments);
@@ -347,7 +360,7 @@ TEST_CASE("every range is refused beyond its ends, and no room finds a value wit
       }
     }
   }
-  CHECK(tried.size() > 50);
+  CHECK(tried.size() > 110);
 }
 
 TEST_CASE("keys of a law that is not the chosen one are allowed and noted", "[pipeline][config]") {

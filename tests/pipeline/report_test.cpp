@@ -139,7 +139,7 @@ TEST_CASE("a blank that breaks the symmetry of the square is said to, and one wi
   input.stamping->symmetry_gap_draw_in = 0.04;
   CHECK(verdict_with(input, "break the eight symmetries").tone == Tone::attention);
   input.stamping->symmetry_gap_shear = -1.0;
-  CHECK(verdict_with(input, "no eightfold symmetry to check").tone == Tone::note);
+  CHECK(verdict_with(input, "nothing to check by symmetry").tone == Tone::note);
 }
 
 TEST_CASE("whatever is not physics is named in the report", "[report][verdict]") {

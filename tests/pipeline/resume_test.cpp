@@ -109,9 +109,10 @@ std::string stamping_key(const std::vector<std::string>& settings) {
 }
 
 /// Kills a run again and again at random moments, each time going on, until one comes to its end.
-void kill_and_resume(int kills, unsigned seed) {
+void kill_and_resume(int kills, unsigned seed, const std::vector<std::string>& more = {}) {
   const Scratch scratch;
-  const auto settings = with(small_stamping(), "process.steps=12");
+  auto settings = with(small_stamping(), "process.steps=12");
+  settings.insert(settings.end(), more.begin(), more.end());
   warm(scratch / "cache");
   // The undisturbed run also leaves cell and friction in the cache: what is killed below is the stamping.
   const Ended whole = Program(scratch, "whole", {}, settings).wait();
@@ -150,6 +151,13 @@ void kill_and_resume(int kills, unsigned seed) {
 
 TEST_CASE("a run killed at random moments goes on to the bytes of an undisturbed one", "[pipeline][resume]") {
   kill_and_resume(2, 7);
+}
+
+TEST_CASE("a run whose friction remembers its slip, killed, goes on to the bytes of an undisturbed one",
+          "[pipeline][resume][friction]") {
+  kill_and_resume(1, 11,
+                  {"friction={law: slip_resistance, slip_resistance: {length: 2 mm, rate_exponent: 0.05}}",
+                   "effects={dwell_ageing: {amplitude: 0.1}, wear: {amplitude: 0.2}}"});
 }
 
 TEST_CASE("a run killed at ten random moments goes on to the bytes of an undisturbed one",

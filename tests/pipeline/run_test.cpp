@@ -351,6 +351,26 @@ TEST_CASE("the orientation study stamps each blank, pulls each sample and report
   CHECK(number(study / "cases/0_deg", "draw_in_max_mm") >
         1.2 * number(study / "cases/45_deg", "draw_in_max_mm"));
   CHECK_THAT(pipeline::read_file(study / "report.html"), Catch::Contains("at every angle by construction"));
+
+  // With the effect the samples differ as it says, and the page no longer says that they cannot.
+  settings = with(settings, "orientation_study.blanks=[0 deg]");
+  options = options_for("orientation.yaml", scratch / "oriented",
+                        with(with(settings, "orientation_study.friction=[0 deg, 45 deg]"),
+                             "effects={orientation: {amplitude: 0.1}}"));
+  options.cache = scratch / "cache";
+  REQUIRE(pipeline::run_case(options) == pipeline::exit_done);
+  const std::string page = pipeline::read_file(scratch / "oriented/report.html");
+  CHECK(page.find("at every angle by construction") == std::string::npos);
+  CHECK_THAT(page, Catch::Contains("0.1 sin^2(2 theta)"));
+  std::vector<double> mu;
+  std::istringstream rows(pipeline::read_file(scratch / "oriented/friction/friction_test.csv"));
+  for (std::string line; std::getline(rows, line);) {
+    std::istringstream cells(line);
+    for (int k = 0; k < 7; ++k) std::getline(cells, line, ',');
+    if (!line.starts_with("friction")) mu.push_back(std::stod(line));
+  }
+  REQUIRE(mu.size() == 2);
+  CHECK(mu[1] == Approx(1.1 * mu[0]));
 }
 
 TEST_CASE("tools from the shipped STEP files stamp the same part as the shapes they were drawn from",

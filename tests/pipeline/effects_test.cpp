@@ -1,0 +1,83 @@
+// Three runs prove an effect: without it, at its off value (equal bytes), and tiny (it acts, and linearly).
+#include <catch2/catch.hpp>
+
+#include <algorithm>
+#include <cmath>
+#include <filesystem>
+#include <string>
+#include <type_traits>
+
+#include "macroscale/stamping.h"
+#include "pipeline/case.h"
+#include "pipeline/outputs.h"
+#include "tests/friction/every_model.h"
+#include "tests/macroscale/sample_fabric.h"
+
+using namespace heddle;
+
+namespace {
+
+const std::string stamping =
+    "heddle: 1\nname: small\n"
+    "weave: {pattern: plain, tow_width: 4.64 mm, gap: 0.75 mm, tow_thickness: 0.75 mm, fabric_thickness: 1.5 "
+    "mm, linear_density: 1872 tex, fibre_mass_fraction: 60 %}\n"
+    "friction: {law: stribeck, scale: 0.325, exponent: 0.136, calibration: {plate_area: 0.01 m^2}}\n"
+    "process: {punch: {stroke: 25 mm, time: 0.15 s}, steps: 5, binder_force: 650 N,\n"
+    "          tool_temperature: 100 degC, blank_temperature: 180 degC}\n"
+    "blank: {size: [320 mm, 320 mm], spacing: 32 mm, grid_error: off}\n"
+    "tools: {punch: {shape: hemisphere, radius: 70 mm}, die: {shape: ring, opening_radius: 72 mm, fillet: 20 "
+    "mm}, binder: {shape: ring, inner_radius: 92 mm, mass: 20 kg}}\n";
+
+struct Run {
+  std::string history;  ///< history.csv
+  double force;         ///< of the punch at the end [N]
+};
+
+/// The keys `effects: {id: ...}` of a file, through the solver, to the bytes of history.csv.
+Run run(const std::string& effects) {
+  const pipeline::Case a_case =
+      pipeline::read_case_text(stamping + effects, "small.yaml", std::filesystem::path());
+  // Half the face touches, and more under load: effects on the area need an area to act on.
+  mesoscale::FabricProperties fabric = test::make_fabric({.rate_consistency = 5.0});
+  fabric.contact.log_fraction = CurveFamily({0.0}, {Curve({0.0, 20.0}, {-2.0, -0.2})});
+  const auto result = macroscale::run_stamping(*a_case.stamping, fabric, a_case.friction->model);
+  REQUIRE(result.summary.completed);
+  return {pipeline::history_csv(result.history), result.history.back().punch_force};
+}
+
+/// The amplitude, which is the first number of each effect. Hersey numbers here lie far beyond the boundary
+/// branch at its default, where a tiny part of nothing is lost in rounding: its branch is drawn out.
+template <class Effect>
+std::string effect_keys(double amplitude) {
+  const auto& field = friction::About<Effect>::fields[0];
+  const std::string more = std::is_same_v<Effect, friction::BoundaryLubrication> ? ", transition: 0.3" : "";
+  return std::string("effects: {") + friction::About<Effect>::id + ": {" + field.name + ": " +
+         pipeline::shortest(amplitude) + " " + field.unit + more + "}}\n";
+}
+
+}  // namespace
+
+TEST_CASE("every friction effect is off at its off value to the byte, and linear when tiny",
+          "[pipeline][effect]") {
+  const Run without = run("");
+  const auto usual = test::every_effect();
+  std::size_t at = 0;
+  const friction::Effects every;
+  friction::for_each_effect(every, [&]<class Effect>(const std::optional<Effect>&) {
+    const auto& named = usual.at(at++);
+    REQUIRE(named.id == friction::About<Effect>::id);
+    CAPTURE(named.id);
+    CHECK((run(std::string("effects: {") + friction::About<Effect>::id + ": off}\n").history ==
+           without.history));
+    CHECK((run(effect_keys<Effect>(0.0)).history == without.history));
+    // 1e-6, in units of what an engineer would care about where that is a stress in Pa.
+    const double tiny = 1e-6 * std::max(1.0, std::abs(named.usual));
+    const Run one = run(effect_keys<Effect>(tiny)), two = run(effect_keys<Effect>(2.0 * tiny));
+    const double once = one.force - without.force, twice = two.force - without.force;
+    CAPTURE(once, twice);
+    CHECK((one.history != without.history));
+    CHECK(once != 0.0);
+    CHECK(twice == Approx(2.0 * once).epsilon(0.01));
+  });
+  CHECK(at == usual.size());
+}

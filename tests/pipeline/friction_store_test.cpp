@@ -1,0 +1,94 @@
+// What the cache keeps of a friction model: every number of every law, rheology and effect.
+#include <catch2/catch.hpp>
+
+#include "pipeline/friction_store.h"
+#include "tests/friction/every_model.h"
+
+using namespace heddle;
+using namespace heddle::test;
+
+namespace {
+
+std::string bytes_of(const friction::Model& model) {
+  Hdf5Writer file;
+  pipeline::write_model(file, model);
+  return file.finish();
+}
+
+friction::Model again(const friction::Model& model) {
+  return pipeline::read_model(Hdf5Reader(bytes_of(model)));
+}
+
+/// mu as the model gives it at a contact that has slipped.
+double coefficient(const friction::Model& model) {
+  return friction::evaluate_unchecked(model, contact_at(0.013, 1.4e5, 451.0, 371.0), used_contact()).mu;
+}
+
+/// Every number moved off its default, so that one left out shows.
+template <class Term>
+void move_numbers(Term& term) {
+  for (const auto& field : friction::About<Term>::fields) term.*(field.member) *= 1.0 + 1.0 / 1024.0;
+}
+
+friction::Model sample() {
+  friction::Model model;
+  model.film.thickness = 0.069e-3;
+  model.box = {0.03, 1.5, 1e4, 3e5, 1e-3, 0.1};
+  return model;
+}
+
+}  // namespace
+
+TEST_CASE("every law, rheology and effect comes out of the cache with its bits",
+          "[pipeline][cache][friction]") {
+  const auto check_kept = [](const friction::Model& model) {
+    const friction::Model kept = again(model);
+    CHECK(bytes_of(kept) == bytes_of(model));
+    CHECK(coefficient(kept) == coefficient(model));
+  };
+  for (friction::Law law : every_law())
+    for (const friction::Rheology& rheology : every_rheology()) {
+      friction::Model model = sample();
+      std::visit([](auto& l) { move_numbers(l); }, law);
+      model.law = law;
+      model.rheology = rheology;
+      CAPTURE(friction::id_of(law), rheology.flow.index(), rheology.temperature.index());
+      check_kept(model);
+    }
+  for (const NamedEffect& effect : every_effect()) {
+    friction::Model model = sample();
+    model.law = friction::HerseyPower{.scale = 0.325, .exponent = 0.136};
+    const friction::Model baseline = model;
+    const std::string plain = bytes_of(baseline);
+    effect.set(model.effects, effect.usual);
+    friction::for_each_effect(model.effects, [](auto& e) {
+      if (e) move_numbers(*e);
+    });
+    CAPTURE(effect.id);
+    check_kept(model);
+    CHECK(bytes_of(model) != plain);
+    CHECK(coefficient(again(model)) != coefficient(baseline));
+    // Off but there is kept as such: the report names it.
+    effect.set(model.effects, 0.0);
+    check_kept(model);
+    CHECK(bytes_of(model) != plain);
+  }
+}
+
+TEST_CASE("the choices of a term that are no numbers are kept", "[pipeline][cache][friction]") {
+  friction::Model model = sample();
+  model.law = friction::SlipResistance{.evolution = friction::SlipResistance::Evolution::inside};
+  model.effects.tool_temperature_shift =
+      friction::ToolTemperatureShift{.slope = -1e-3, .form = friction::ToolTemperatureShift::Form::factor};
+  const friction::Model kept = again(model);
+  CHECK(std::get<friction::SlipResistance>(kept.law).evolution ==
+        friction::SlipResistance::Evolution::inside);
+  CHECK(kept.effects.tool_temperature_shift->form == friction::ToolTemperatureShift::Form::factor);
+}
+
+TEST_CASE("a law of another program is refused", "[pipeline][cache][friction][wrong input]") {
+  Hdf5Writer file;
+  file.write("/law/name", "ohm");
+  const std::string bytes = file.finish();
+  CHECK_THROWS_AS(pipeline::read_model(Hdf5Reader(bytes)), Hdf5Error);
+}
