@@ -5,19 +5,19 @@
 #include <openvdb/tools/MeshToVolume.h>
 #include <openvdb/tools/SignedFloodFill.h>
 #include <openvdb/tools/VolumeToMesh.h>
-#include <openvdb/tree/LeafManager.h>
 #include <tbb/blocked_range.h>
 #include <tbb/parallel_for.h>
 #include <tbb/parallel_reduce.h>
 
 #include <algorithm>
 #include <cmath>
+#include <deque>
 #include <limits>
 #include <stdexcept>
-#include <tuple>
 #include <utility>
 
-#include "core/triangle_walk.h"
+#include "core/band_growth.h"
+#include "core/sheet_side.h"
 
 namespace heddle {
 
@@ -101,6 +101,9 @@ FloatGrid::Ptr empty_grid(double voxel, double half_width) {
   return grid;
 }
 
+// Half width of the band that meshToVolume finds [voxel]: all that is nearer than one voxel for certain.
+constexpr float surface_width = 2.0f;
+
 // What meshToVolume reads: places in units of voxels, in double.
 class MeshInVoxels {
  public:
@@ -116,73 +119,6 @@ class MeshInVoxels {
  private:
   const TriangleMesh& mesh_;
   double scale_;
-};
-
-// Which side of an oriented surface a place is on, by the normals of its faces, edges and corners: at an edge
-// the sum of both faces, at a corner the sum weighted by angle. Source: Baerentzen & Aanaes 2005.
-class SideOfSheet {
- public:
-  explicit SideOfSheet(const TriangleMesh& mesh) : mesh_(mesh), corner_(mesh.vertices.size(), Vec3d(0.0)) {
-    struct Side {
-      std::array<int, 2> edge;
-      std::size_t place;  // 3 * triangle + side
-    };
-    std::vector<Side> sides;
-    face_.reserve(mesh.triangles.size());
-    sides.reserve(3 * mesh.triangles.size());
-    for (std::size_t t = 0; t < mesh.triangles.size(); ++t) {
-      const auto& v = mesh.triangles[t];
-      Vec3d normal = (vertex(v[1]) - vertex(v[0])).cross(vertex(v[2]) - vertex(v[0]));
-      normal.normalize();
-      face_.push_back(normal);
-      for (std::size_t k = 0; k < 3; ++k) {
-        const int a = v[k], b = v[(k + 1) % 3], c = v[(k + 2) % 3];
-        sides.push_back({{std::min(a, b), std::max(a, b)}, 3 * t + k});
-        const Vec3d e = vertex(b) - vertex(a), f = vertex(c) - vertex(a);
-        corner_[static_cast<std::size_t>(a)] += normal * std::atan2(e.cross(f).length(), e.dot(f));
-      }
-    }
-    std::sort(sides.begin(), sides.end(), [](const Side& a, const Side& b) {
-      return std::tie(a.edge, a.place) < std::tie(b.edge, b.place);
-    });
-    edge_.assign(3 * mesh.triangles.size(), Vec3d(0.0));
-    for (std::size_t first = 0, end = 0; first < sides.size(); first = end) {
-      Vec3d sum(0.0);
-      for (end = first; end < sides.size() && sides[end].edge == sides[first].edge; ++end)
-        sum += face_[sides[end].place / 3];
-      for (std::size_t n = first; n < end; ++n) edge_[sides[n].place] = sum;
-    }
-  }
-
-  // Whether the place lies against the normals of the nearest feature of this triangle.
-  bool behind(const Vec3d& q, std::size_t triangle) const {
-    // Regions of a triangle: Ericson, Real-Time Collision Detection, 5.1.5.
-    const auto& v = mesh_.triangles[triangle];
-    const Vec3d a = vertex(v[0]), b = vertex(v[1]), c = vertex(v[2]), ab = b - a, ac = c - a;
-    const auto side = [&](const Vec3d& foot, const Vec3d& normal) { return (q - foot).dot(normal) < 0.0; };
-    const auto corner = [&](std::size_t k, const Vec3d& foot) {
-      return side(foot, corner_[static_cast<std::size_t>(v[k])]);
-    };
-    const double d1 = ab.dot(q - a), d2 = ac.dot(q - a);
-    if (d1 <= 0.0 && d2 <= 0.0) return corner(0, a);
-    const double d3 = ab.dot(q - b), d4 = ac.dot(q - b);
-    if (d3 >= 0.0 && d4 <= d3) return corner(1, b);
-    if (d1 * d4 - d3 * d2 <= 0.0 && d1 >= 0.0 && d3 <= 0.0) return side(a, edge_[3 * triangle]);
-    const double d5 = ab.dot(q - c), d6 = ac.dot(q - c);
-    if (d6 >= 0.0 && d5 <= d6) return corner(2, c);
-    if (d5 * d2 - d1 * d6 <= 0.0 && d2 >= 0.0 && d6 <= 0.0) return side(a, edge_[3 * triangle + 2]);
-    if (d3 * d6 - d5 * d4 <= 0.0 && d4 - d3 >= 0.0 && d5 - d6 >= 0.0) return side(b, edge_[3 * triangle + 1]);
-    return side(a, face_[triangle]);
-  }
-
- private:
-  Vec3d vertex(int index) const {
-    const auto& p = mesh_.vertices[static_cast<std::size_t>(index)];
-    return {p[0], p[1], p[2]};
-  }
-
-  const TriangleMesh& mesh_;
-  std::vector<Vec3d> face_, edge_, corner_;
 };
 
 // Voxels of a leaf that lie beyond the band take the side of a neighbour that does not.
@@ -259,37 +195,50 @@ void fill_blocks(FloatGrid& grid, float beyond) {
   } while (!layer.empty());
 }
 
-// meshToVolume carries the nearest triangle from voxel to voxel as its band grows, which misses nearer ones,
-// worst where triangles are smaller than voxels. So it gives the band, its inner side and a triangle to start
-// from, and the distances are taken anew. A sheet has no inner side but that of its normals.
-void measure(FloatGrid& grid, const openvdb::Int32Grid& triangles, const TriangleMesh& mesh, double voxel,
-             Sides sides) {
-  const TriangleWalk walk(mesh);
-  const auto sheet = sides == Sides::open ? std::make_unique<const SideOfSheet>(mesh) : nullptr;
-  const float beyond = grid.background();
-  openvdb::tree::LeafManager<FloatGrid::TreeType> leaves(grid.tree());
-  leaves.foreach ([&](Leaf& leaf, std::size_t) {
+bool meets(const Box& box, const std::array<int, 3>& origin, double voxel) {
+  for (std::size_t c = 0; c < 3; ++c) {
+    const double low = voxel * origin[c], high = voxel * (origin[c] + LevelSet::block - 1);
+    if (high < box.low[c] || low > box.high[c]) return false;
+  }
+  return true;
+}
+
+// meshToVolume carries the nearest triangle from voxel to voxel as its band grows, which is slow and misses
+// nearer ones. So it gives the voxels at the surface, a triangle near each and their inner side; the band is
+// grown from there.
+std::deque<BandBlock> grown(const FloatGrid& surface, const openvdb::Int32Grid& triangles,
+                            const TriangleMesh& mesh, double voxel, double reach, const SheetSide* sheet,
+                            const Box& region) {
+  const auto wanted = [&](const std::array<int, 3>& origin) { return meets(region, origin, voxel); };
+  std::vector<std::array<int, 3>> first;
+  for (auto leaf = surface.tree().cbeginLeaf(); leaf; ++leaf)
+    if (!leaf->isEmpty() && wanted(to_array(leaf->origin()))) first.push_back(to_array(leaf->origin()));
+  std::sort(first.begin(), first.end());
+  const auto seed = [&](const std::array<int, 3>& origin) {
+    const Coord c(origin[0], origin[1], origin[2]);
+    const Leaf& leaf = *surface.tree().probeConstLeaf(c);
     const auto near = triangles.getConstUnsafeAccessor();
-    TriangleWalk::Nearest nearest{
-        0.0, -1};  // of this leaf alone: the result must not depend on who works on which
-    for (auto value = leaf.beginValueOn(); value; ++value) {
-      const Coord c = value.getCoord();
-      const Vec3d at = c.asVec3d() * voxel;
-      const Eigen::Vector3d q(at.x(), at.y(), at.z());
-      TriangleWalk::Nearest start = walk.at(std::max(near.getValue(c), 0), q);
-      if (nearest.triangle >= 0) {
-        const TriangleWalk::Nearest last = walk.at(nearest.triangle, q);
-        if (last.squared < start.squared) start = last;
-      }
-      nearest = walk.from(start, q);
-      const bool inside =
-          sheet ? sheet->behind(at, static_cast<std::size_t>(nearest.triangle)) : *value < 0.0f;
-      const auto d = static_cast<float>(std::sqrt(nearest.squared));
-      value.setValue(inside ? -d : d);
+    BandSeed known;
+    known.triangle.fill(-1);
+    for (auto value = leaf.cbeginValueOn(); value; ++value) {
+      known.triangle[value.pos()] = near.getValue(value.getCoord());
+      known.inside[value.pos()] = *value < 0.0f;
     }
-    if (sheet) spread_sides(leaf, beyond);
-  });
-  if (sheet) fill_blocks(grid, beyond);
+    return known;
+  };
+  return grow_band(mesh, voxel, reach, first, seed, wanted, sheet);
+}
+
+std::unique_ptr<Leaf> leaf_of(const BandBlock& block, float beyond) {
+  auto leaf = std::make_unique<Leaf>(Coord(block.origin[0], block.origin[1], block.origin[2]), beyond, false);
+  for (openvdb::Index n = 0; n < Leaf::SIZE; ++n) {
+    const float d = block.distance[n];
+    if (std::abs(d) < beyond)
+      leaf->setValueOn(n, d);
+    else
+      leaf->setValueOff(n, std::copysign(beyond, d));
+  }
+  return leaf;
 }
 
 }  // namespace
@@ -371,7 +320,8 @@ LevelSet level_set_from_distance(const std::function<double(double, double, doub
   return LevelSet(std::make_shared<const LevelSet::Grid>(LevelSet::Grid{grid, voxel, half_width}));
 }
 
-LevelSet level_set_from_mesh(const TriangleMesh& mesh, double voxel, double half_width_voxels, Sides sides) {
+LevelSet level_set_from_mesh(const TriangleMesh& mesh, double voxel, double half_width_voxels, Sides sides,
+                             const Box& region) {
   check_sizes(voxel, half_width_voxels);
   for (const auto& triangle : mesh.triangles)
     for (int vertex : triangle)
@@ -379,16 +329,33 @@ LevelSet level_set_from_mesh(const TriangleMesh& mesh, double voxel, double half
         throw std::invalid_argument("a triangle names a vertex that does not exist");
   start_openvdb();
   if (mesh.triangles.empty()) throw std::invalid_argument("a level set needs a mesh with triangles");
-  // A voxel more than asked for: the band is found by distances that may be a little too large.
-  const auto width = static_cast<float>(half_width_voxels + 1.0);
   const auto transform = openvdb::math::Transform::createLinearTransform(voxel);
   const int flags = sides == Sides::open ? openvdb::tools::UNSIGNED_DISTANCE_FIELD : 0;
   openvdb::Int32Grid triangles;
-  FloatGrid::Ptr grid = openvdb::tools::meshToVolume<FloatGrid>(MeshInVoxels(mesh, voxel), *transform, width,
-                                                                width, flags, &triangles);
-  measure(*grid, triangles, mesh, voxel, sides);
-  return LevelSet(
-      std::make_shared<const LevelSet::Grid>(LevelSet::Grid{grid, voxel, voxel * half_width_voxels}));
+  FloatGrid::Ptr surface = openvdb::tools::meshToVolume<FloatGrid>(
+      MeshInVoxels(mesh, voxel), *transform, surface_width, surface_width, flags, &triangles);
+  const auto sheet = sides == Sides::open ? std::make_unique<const SheetSide>(mesh) : nullptr;
+  const double half_width = voxel * half_width_voxels;
+  std::deque<BandBlock> band = grown(*surface, triangles, mesh, voxel, half_width, sheet.get(), region);
+
+  // More than half_width after rounding to a float, so that what lies beyond the band is told from its rim.
+  const auto beyond = static_cast<float>(half_width * (1.0 + 1e-6));
+  FloatGrid::Ptr grid = empty_grid(voxel, beyond);
+  for (; !band.empty(); band.pop_front()) {
+    auto leaf = leaf_of(band.front(), beyond);
+    if (sheet) spread_sides(*leaf, beyond);
+    if (!leaf->isEmpty()) grid->tree().addLeaf(leaf.release());
+  }
+  // Outside the region the surface keeps its thin band, so that inside and outside stay told apart
+  // everywhere.
+  for (auto leaf = surface->tree().beginLeaf(); leaf; ++leaf)
+    if (!leaf->isEmpty() && !meets(region, to_array(leaf->origin()), voxel))
+      grid->tree().addLeaf(new Leaf(*leaf));
+  if (sheet)
+    fill_blocks(*grid, beyond);
+  else
+    openvdb::tools::signedFloodFill(grid->tree());
+  return LevelSet(std::make_shared<const LevelSet::Grid>(LevelSet::Grid{grid, voxel, half_width}));
 }
 
 double volume(const LevelSet& body) {

@@ -3,6 +3,7 @@
 #include <array>
 #include <cstddef>
 #include <functional>
+#include <limits>
 #include <memory>
 #include <vector>
 
@@ -57,10 +58,17 @@ enum class Sides {
   open
 };
 
+/// All of space.
+constexpr Box everywhere{{-std::numeric_limits<double>::infinity(), -std::numeric_limits<double>::infinity(),
+                          -std::numeric_limits<double>::infinity()},
+                         {std::numeric_limits<double>::infinity(), std::numeric_limits<double>::infinity(),
+                          std::numeric_limits<double>::infinity()}};
+
 /// Distance to a mesh: to its nearest triangle, up to the rounding of a float.
+/// @param region  only blocks that meet it get the band; elsewhere a level set tells sides and no distances
 /// @throws std::invalid_argument  if voxel or width are not positive, or an index does not exist
 LevelSet level_set_from_mesh(const TriangleMesh& mesh, double voxel, double half_width_voxels,
-                             Sides sides = Sides::closed);
+                             Sides sides = Sides::closed, const Box& region = everywhere);
 
 /// Enclosed volume [m^3].
 double volume(const LevelSet& body);

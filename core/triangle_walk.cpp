@@ -61,4 +61,11 @@ TriangleWalk::Nearest TriangleWalk::from(Nearest best, const Vector3d& place) co
   }
 }
 
+bool TriangleWalk::touch(int a, int b) const {
+  for (int v : mesh_.triangles[static_cast<std::size_t>(a)])
+    for (int w : mesh_.triangles[static_cast<std::size_t>(b)])
+      if (v == w) return true;
+  return false;
+}
+
 }  // namespace heddle

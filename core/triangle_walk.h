@@ -26,6 +26,8 @@ class TriangleWalk {
   };
   Nearest at(int triangle, const Eigen::Vector3d& place) const;
   Nearest from(Nearest start, const Eigen::Vector3d& place) const;
+  /// Whether two triangles share a vertex: a walk that ended at one has seen the other.
+  bool touch(int a, int b) const;
 
  private:
   const TriangleMesh& mesh_;

@@ -41,14 +41,18 @@ class Prefilter {
     set.read({origin[0] - 2, origin[1] - 2, origin[2] - 2}, in, f_.data());
   }
 
-  // Smallest value and smallest size over the block itself and a rim of one voxel.
-  std::pair<float, float> lowest() const {
-    float value = std::numeric_limits<float>::infinity(), size = value;
+  struct Extremes {
+    float low = std::numeric_limits<float>::infinity(), high = -low, size = low;
+  };
+  // Smallest and largest value, and smallest size, over the block itself and a rim of one voxel.
+  Extremes extremes() const {
+    Extremes found;
     for_inner([&](std::size_t n, std::size_t) {
-      value = std::min(value, f_[n]);
-      size = std::min(size, std::abs(f_[n]));
+      found.low = std::min(found.low, f_[n]);
+      found.high = std::max(found.high, f_[n]);
+      found.size = std::min(found.size, std::abs(f_[n]));
     });
-    return {value, size};
+    return found;
   }
 
   void write(float* coefficients) const {
@@ -83,10 +87,38 @@ Vector3d vertex(const TriangleMesh& mesh, int index) {
   return {v[0], v[1], v[2]};
 }
 
-MeshSize size_of(const TriangleMesh& mesh) {
+bool meets(const Box& a, const Box& b) {
+  for (std::size_t c = 0; c < 3; ++c)
+    if (a.high[c] < b.low[c] || a.low[c] > b.high[c]) return false;
+  return true;
+}
+
+Box block_box(const std::array<int, 3>& origin, double voxel) {
+  Box box;
+  for (std::size_t c = 0; c < 3; ++c) {
+    box.low[c] = voxel * (origin[c] - 0.5);
+    box.high[c] = voxel * (origin[c] + block - 0.5);
+  }
+  return box;
+}
+
+Box larger(Box box, double by) {
+  for (std::size_t c = 0; c < 3; ++c) {
+    box.low[c] -= by;
+    box.high[c] += by;
+  }
+  return box;
+}
+
+// Size of what meets the region; a triangle that reaches out of it counts whole.
+MeshSize size_of(const TriangleMesh& mesh, const Box& region = everywhere) {
   MeshSize size;
   for (const auto& t : mesh.triangles) {
     const Vector3d a = vertex(mesh, t[0]), b = vertex(mesh, t[1]), c = vertex(mesh, t[2]);
+    Box box;
+    Vector3d::Map(box.low.data()) = a.cwiseMin(b).cwiseMin(c);
+    Vector3d::Map(box.high.data()) = a.cwiseMax(b).cwiseMax(c);
+    if (!meets(box, region)) continue;
     size.area += 0.5 * (b - a).cross(c - a).norm();
     size.low = size.low.cwiseMin(a).cwiseMin(b).cwiseMin(c);
     size.high = size.high.cwiseMax(a).cwiseMax(b).cwiseMax(c);
@@ -126,8 +158,12 @@ double required_half_width(double tool_step, double thickness, double largest_in
   return tool_step + thickness + largest_increment;
 }
 
-ToolBand::ToolBand(const LevelSet& level_set, double half_width, Sides sides)
-    : voxel_(level_set.voxel()), inverse_voxel_(1.0 / voxel_), half_width_(half_width), sides_(sides) {
+ToolBand::ToolBand(const LevelSet& level_set, double half_width, Sides sides, const Box& region)
+    : voxel_(level_set.voxel()),
+      inverse_voxel_(1.0 / voxel_),
+      half_width_(half_width),
+      sides_(sides),
+      region_(region) {
   if (!(half_width > 0.0) || level_set.half_width() < half_width + (rim - 1e-6) * voxel_)
     throw std::invalid_argument(
         fmt::format("a tool band of {} needs a level set of {}", half_width, half_width + rim * voxel_));
@@ -152,16 +188,18 @@ ToolBand::ToolBand(const LevelSet& level_set, double half_width, Sides sides)
 
   // A block matters if some point that is nearest to one of its voxels lies in the promised band.
   const auto reach = static_cast<float>(half_width + 0.5 * std::sqrt(3.0) * voxel_);
-  std::vector<float> lowest(blocks.size());
-  std::vector<std::uint8_t> wanted(blocks.size());
+  std::vector<Prefilter::Extremes> extremes(blocks.size());
+  std::vector<std::uint8_t> in_region(blocks.size());
   tbb::parallel_for(std::size_t{0}, blocks.size(), [&](std::size_t n) {
     Prefilter samples;
     samples.read(level_set, blocks[n]);
-    const auto [value, size] = samples.lowest();
-    lowest[n] = value;
-    wanted[n] = size <= reach;
+    extremes[n] = samples.extremes();
+    in_region[n] = meets(region_, block_box(blocks[n], voxel_));
   });
-  depth_ = -*std::min_element(lowest.begin(), lowest.end());
+  float lowest = 0.0f;
+  for (std::size_t n = 0; n < blocks.size(); ++n)
+    if (in_region[n]) lowest = std::min(lowest, extremes[n].low);
+  depth_ = -lowest;
 
   table_.resize(static_cast<std::size_t>(blocks_[0]) * blocks_[1] * blocks_[2]);
   tbb::parallel_for(std::size_t{0}, table_.size(), [&](std::size_t n) {
@@ -175,9 +213,13 @@ ToolBand::ToolBand(const LevelSet& level_set, double half_width, Sides sides)
   });
   std::vector<std::array<int, 3>> kept;
   for (std::size_t n = 0; n < blocks.size(); ++n) {
-    if (!wanted[n]) continue;
-    table_[place(blocks[n])] = static_cast<std::int32_t>(kept.size());
-    kept.push_back(blocks[n]);
+    std::int32_t& entry = table_[place(blocks[n])];
+    if (!in_region[n]) {
+      entry = extremes[n].high < 0.0f ? inside : extremes[n].low > 0.0f ? outside : unknown;
+    } else if (extremes[n].size <= reach) {
+      entry = static_cast<std::int32_t>(kept.size());
+      kept.push_back(blocks[n]);
+    }
   }
   // A row of three is read as four: one more at the very end.
   brick_.resize(kept.size() * brick_size + 1);
@@ -190,6 +232,11 @@ ToolBand::ToolBand(const LevelSet& level_set, double half_width, Sides sides)
 
 std::size_t ToolBand::memory() const {
   return sizeof *this + table_.size() * sizeof(table_[0]) + brick_.size() * sizeof(brick_[0]);
+}
+
+bool ToolBand::in_region(const Vector3d& x) const {
+  const Eigen::Map<const Vector3d> low(region_.low.data()), high(region_.high.data());
+  return (x.array() >= low.array()).all() && (x.array() <= high.array()).all();
 }
 
 std::int32_t ToolBand::brick_at(const std::array<int, 3>& voxel) const {
@@ -221,6 +268,18 @@ Distance ToolBand::beyond(const Vector3d& x, bool within) const {
           Matrix3d::Zero()};
 }
 
+double ToolBand::rough_distance(const Vector3d& x) const {
+  constexpr double infinity = std::numeric_limits<double>::infinity();
+  if (in_region(x)) return evaluate(x).distance;
+  std::array<int, 3> nearest;
+  for (int c = 0; c < 3; ++c) {
+    const double whole = std::floor(x[c] * inverse_voxel_ + 0.5);
+    if (!(std::abs(whole) < 1e9)) return infinity;
+    nearest[static_cast<std::size_t>(c)] = static_cast<int>(whole);
+  }
+  return brick_at(nearest) == inside ? -infinity : infinity;
+}
+
 Distance ToolBand::evaluate(const Vector3d& x) const {
   std::array<int, 3> nearest;
   std::array<double, 3> offset;
@@ -233,8 +292,9 @@ Distance ToolBand::evaluate(const Vector3d& x) const {
     nearest[static_cast<std::size_t>(c)] = static_cast<int>(whole);
     offset[static_cast<std::size_t>(c)] = s - whole;
   }
+  if (!in_region(x)) return beyond(x, true);
   const std::int32_t brick = brick_at(nearest);
-  if (brick < 0) return beyond(x, brick == inside);
+  if (brick < 0) return beyond(x, brick != outside);
 
   const Weights wx = weights(offset[0], inverse_voxel_), wy = weights(offset[1], inverse_voxel_),
                 wz = weights(offset[2], inverse_voxel_);
@@ -282,19 +342,21 @@ bool beyond_band(const ToolBand& band, const Vector3d& x) {
 
 double estimated_memory(const TriangleMesh& mesh, const ToolBandSpec& spec) {
   const MeshSize size = size_of(mesh);
+  const double area_in_region = size_of(mesh, larger(spec.region, spec.half_width)).area;
   // Blocks that a band of this width cuts: as thick as the band and, on average over all directions, one and
   // a half blocks more.
   const double side = block * spec.voxel;
-  const auto blocks_cut = [&](double half_width) {
-    return size.area * (2.0 * half_width + 1.5 * side) / (side * side * side);
+  const auto blocks_cut = [&](double area, double half_width) {
+    return area * (2.0 * half_width + 1.5 * side) / (side * side * side);
   };
   const double leaf = block * block * block * sizeof(float) + 256.0, brick = 1000.0 * sizeof(float);
-  // Both are reached a little further than promised. While the level set is built there is as much again.
-  const double level_set = leaf * blocks_cut(spec.voxel * (level_set_half_width(spec) + 2.0));
-  const double bricks = brick * blocks_cut(spec.half_width + 2.0 * spec.voxel);
+  // The surface's own voxels with a triangle each; the band, with a triangle each while it grows; the bricks.
+  const double surface = 2.0 * leaf * blocks_cut(size.area, 3.0 * spec.voxel);
+  const double level_set = 2.0 * leaf * blocks_cut(area_in_region, spec.voxel * level_set_half_width(spec));
+  const double bricks = brick * blocks_cut(area_in_region, spec.half_width + 2.0 * spec.voxel);
   const Eigen::Array3d across = (size.high - size.low).array() / side + 4.0;
-  constexpr double per_triangle = 300.0;  // tree of boxes, list of edges
-  return 2.0 * level_set + bricks + across.prod() * sizeof(std::int32_t) +
+  constexpr double per_triangle = 300.0;  // triangles about each vertex, list of edges
+  return surface + level_set + bricks + across.prod() * sizeof(std::int32_t) +
          per_triangle * static_cast<double>(mesh.triangles.size());
 }
 
@@ -360,8 +422,10 @@ std::string thickness_in_words(double thickness, double voxel) {
 ToolBand tool_band(const TriangleMesh& mesh, const ToolBandSpec& spec, const std::string& key) {
   Problems problems = check(mesh, spec, key);
   if (!problems.empty()) throw InputError(std::move(problems));
-  ToolBand band(level_set_from_mesh(mesh, spec.voxel, level_set_half_width(spec), spec.sides),
-                spec.half_width, spec.sides);
+  // The splines of the region's outermost blocks read a little of those next to them.
+  const Box known = larger(spec.region, 2.0 * block * spec.voxel);
+  ToolBand band(level_set_from_mesh(mesh, spec.voxel, level_set_half_width(spec), spec.sides, known),
+                spec.half_width, spec.sides, spec.region);
   if (band.depth() < spec.half_width)
     throw InputError({{"*.thin"_family.of(key), key, thickness_in_words(2.0 * band.depth(), spec.voxel),
                        fmt::format("must be thicker than twice its band's half width, {}: a node pressed "

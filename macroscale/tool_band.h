@@ -16,6 +16,7 @@ struct ToolBandSpec {
   double voxel = 0.5e-3;     ///< [m]; a twentieth of the smallest radius that matters keeps the error small
   double half_width = 3e-3;  ///< distances are right up to here on both sides [m]; see required_half_width
   Sides sides = Sides::closed;  ///< whether the mesh bounds a body or is a sheet
+  Box region = everywhere;      ///< distances are known in here only; see reach_of_fabric
   double memory_limit = 400e6;  ///< [byte], of the whole build
 };
 
@@ -43,8 +44,10 @@ double required_half_width(double tool_step, double thickness, double largest_in
 class ToolBand {
  public:
   /// @param half_width  [m], at most that of the level set less `rim` voxels
+  /// @param region      where distances are asked for; the level set's own must be larger by a block
   /// @throws std::invalid_argument  if the level set is too narrow
-  ToolBand(const LevelSet& level_set, double half_width, Sides sides = Sides::closed);
+  ToolBand(const LevelSet& level_set, double half_width, Sides sides = Sides::closed,
+           const Box& region = everywhere);
 
   /// Voxels of a level set beyond half_width that the splines there still read.
   static constexpr double rim = 3.5;
@@ -57,17 +60,23 @@ class ToolBand {
   double depth() const { return depth_; }
 
   Distance evaluate(const Eigen::Vector3d& x) const;
+  /// The same distance in the region; elsewhere -infinity for certain inside the tool, infinity for outside
+  /// it or too near to its surface to tell. For tools against tools, which meet outside the fabric's region
+  /// too.
+  double rough_distance(const Eigen::Vector3d& x) const;
 
  private:
   static constexpr int brick_row = LevelSet::block + 2;
   static constexpr std::size_t brick_size = brick_row * brick_row * brick_row;
-  static constexpr std::int32_t outside = -1, inside = -2;
+  static constexpr std::int32_t outside = -1, inside = -2, unknown = -3;
 
+  bool in_region(const Eigen::Vector3d& x) const;
   std::int32_t brick_at(const std::array<int, 3>& voxel) const;
   Distance beyond(const Eigen::Vector3d& x, bool within) const;
 
   double voxel_, inverse_voxel_, half_width_, depth_ = 0.0;
   Sides sides_;
+  Box region_;
   std::array<int, 3> first_{}, blocks_{};  ///< table of blocks: first index and number each way, in blocks
   std::vector<std::int32_t> table_;        ///< brick of each block, or on which side of the band it lies
   std::vector<float> brick_;
@@ -77,12 +86,12 @@ class ToolBand {
 ///
 /// Outside, beyond the band: a lower bound of the distance, at least half_width; normal unit, curvature zero.
 /// No contact can arise there as long as half_width is more than half the fabric's thickness. Inside, beyond
-/// the band: the distance is -infinity, so that an energy built on it is infinite and a line search takes a
-/// shorter step. Never "no contact".
+/// the band, and anywhere outside the band's region: the distance is -infinity, so that an energy built on it
+/// is infinite and a line search takes a shorter step. Never "no contact".
 Distance evaluate(const ToolBand& band, const Eigen::Vector3d& x);
 
-/// Whether x lies so deep inside the tool that the band does not know its distance: an error of the caller,
-/// who knows node and tool. NaN counts as such.
+/// Whether the band does not know the distance at x, which lies too deep inside the tool or outside the
+/// band's region: an error of the caller, who knows node and tool. NaN counts as such.
 bool beyond_band(const ToolBand& band, const Eigen::Vector3d& x);
 
 /// Faults of a mesh and a specification that would keep a band from being built or trusted, without building

@@ -6,6 +6,8 @@
 #include <string>
 #include <utility>
 
+#include <tbb/task_group.h>
+
 #include "macroscale/solve.h"
 #include "macroscale/tool_set.h"
 
@@ -32,26 +34,43 @@ double tool_step(const StampingSpec& spec) {
 }  // namespace
 
 StampingSpec with_tools_loaded(StampingSpec spec, double thickness) {
-  Problems problems;
   const double half_width = required_half_width(tool_step(spec), thickness, SolveOptions{}.largest_increment);
-  const std::array<std::pair<std::string, std::optional<ToolFileSpec>*>, 3> tools = {
-      {{"tools.punch", &spec.punch.file},
-       {"tools.die", &spec.die.file},
-       {"tools.binder", &spec.binder.file}}};
-  for (const auto& [key, file_pointer] : tools) {
-    auto& file = *file_pointer;
-    if (!file || file->loaded) continue;
-    const Expectation expected{key, extent(outline_of(spec.blank)), spec.process.stroke};
+  struct Source {
+    std::string key;
+    Role role;
+    std::optional<ToolFileSpec>& file;
+    Problems problems = {};
+  };
+  std::array<Source, 3> sources = {{{"tools.punch", Role::punch, spec.punch.file},
+                                    {"tools.die", Role::die, spec.die.file},
+                                    {"tools.binder", Role::binder, spec.binder.file}}};
+  // Files are read one by one, which is gmsh's way; meanwhile the band of the tool before is built.
+  tbb::task_group bands;
+  for (Source& source : sources) {
+    if (!source.file || source.file->loaded) continue;
+    const Expectation expected{source.key, extent(outline_of(spec.blank)), spec.process.stroke};
     try {
-      LoadedTool tool = load_tool(file->source, expected);
-      const ToolBandSpec band{.voxel = file->voxel, .half_width = half_width};
-      auto field = std::make_shared<const ToolBand>(tool_band(tool.mesh, band, key));
-      file->loaded =
-          std::make_shared<const LoadedToolFile>(LoadedToolFile{std::move(tool), std::move(field)});
+      auto tool = std::make_shared<LoadedTool>(load_tool(source.file->source, expected));
+      const ToolBandSpec band{.voxel = source.file->voxel,
+                              .half_width = half_width,
+                              .region = reach_of_fabric(spec, source.role, tool->mesh)};
+      bands.run([&source, tool, band] {
+        try {
+          auto field = std::make_shared<const ToolBand>(tool_band(tool->mesh, band, source.key));
+          source.file->loaded =
+              std::make_shared<const LoadedToolFile>(LoadedToolFile{std::move(*tool), std::move(field)});
+        } catch (const InputError& error) {
+          source.problems = error.problems();
+        }
+      });
     } catch (const InputError& error) {
-      problems.insert(problems.end(), error.problems().begin(), error.problems().end());
+      source.problems = error.problems();
     }
   }
+  bands.wait();
+  Problems problems;
+  for (const Source& source : sources)
+    problems.insert(problems.end(), source.problems.begin(), source.problems.end());
   if (!problems.empty()) throw InputError(std::move(problems));
   return spec;
 }

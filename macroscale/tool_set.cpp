@@ -83,6 +83,12 @@ struct Nearest {
   Vector3d at = Vector3d::Zero();                             ///< in the frame of the press [m]
 };
 
+// Distance of one tool's point to another tool. Outside the fabric's reach it is told only whether they cut.
+double clearance(const Shape& shape, const Vector3d& x) {
+  const auto* tool = std::get_if<BandShape>(&shape);
+  return tool ? tool->band->rough_distance(x - tool->offset) : distance(shape, x).distance;
+}
+
 Nearest nearer(const Nearest& a, const Nearest& b) {
   return b.distance < a.distance ? b : a;
 }
@@ -113,7 +119,7 @@ Nearest nearest_on_stroke(const Placed& of_vertices, const Placed& other, double
           for (std::size_t i = range.begin(); i != range.end(); ++i) {
             const auto& v = vertices[i];
             const Vector3d x(v[0], v[1], v[2] + of_vertices.lift + sign * travel);
-            const double d = distance(other.shape, x).distance;
+            const double d = clearance(other.shape, x);
             if (d < found.distance) found = {d, travel, x};
           }
           return found;
@@ -153,6 +159,25 @@ Problems check_hold(const StampingSpec& spec) {
 }
 
 }  // namespace
+
+Box reach_of_fabric(const StampingSpec& spec, Role role, const TriangleMesh& mesh) {
+  const double stroke = spec.process.stroke, margin = 0.25 * stroke, lift = lift_to_touch(mesh, role);
+  const Outline outline = outline_of(spec.blank);
+  Box reach = everywhere;
+  for (std::size_t c = 0; c < 2; ++c) {
+    const auto [low, high] =
+        std::minmax_element(outline.outer.begin(), outline.outer.end(),
+                            [c](const Point2& a, const Point2& b) { return a[c] < b[c]; });
+    reach.low[c] = (*low)[c] - stroke;
+    reach.high[c] = (*high)[c] + stroke;
+  }
+  // The binder stays on the blank, the die below it; the punch is down by the stroke at its end.
+  if (role == Role::die)
+    reach.low[2] = -stroke - margin - lift;
+  else
+    reach.high[2] = (role == Role::punch ? stroke : 0.0) + margin - lift;
+  return reach;
+}
 
 Problems check_tools(const StampingSpec& spec, double thickness) {
   Problems problems = check_passage(spec, Role::die, thickness);

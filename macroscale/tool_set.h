@@ -2,6 +2,7 @@
 
 #include <memory>
 
+#include "core/level_set.h"
 #include "core/problem.h"
 #include "macroscale/stamping.h"
 #include "macroscale/tool_band.h"
@@ -14,6 +15,12 @@ struct LoadedToolFile {
   LoadedTool tool;
   std::shared_ptr<const ToolBand> band;  ///< in the file's own frame
 };
+
+/// Where the fabric can get to against a tool, in the frame of the tool's file: sideways as far as the blank
+/// plus the stroke; a quarter of the stroke beyond what lies between punch and binder. Tools are often thick,
+/// and nothing meets their far sides. A node that leaves this room stops the run (macroscale/tool_band.h).
+/// @param mesh  of the tool, as in its file
+Box reach_of_fabric(const StampingSpec& spec, Role role, const TriangleMesh& mesh);
 
 /// What the tool files have to fit: each other on the whole stroke, the fabric between them, the blank.
 /// Distances are taken from the vertices of one tool to the other at nine positions of the stroke.

@@ -120,3 +120,66 @@ TEST_CASE(
   }
   CHECK(count > 100);
 }
+
+namespace {
+
+// A block with a slot that is narrower than the band is wide: two sheets face each other.
+TriangleMesh slotted_block(double voxel) {
+  const auto beyond = [](double x, double half) { return std::abs(x) - half; };
+  const auto distance = [&](double x, double y, double z) {
+    const double block = std::max({beyond(x, 4.1e-3), beyond(y, 3.1e-3), beyond(z, 3.1e-3)});
+    const double slot = std::max(beyond(x - 0.7e-3, 0.8e-3), -z - 1.9e-3);
+    return std::max(block, -slot);
+  };
+  return surface(
+      level_set_from_distance(distance, {{-4.1e-3, -3.1e-3, -3.1e-3}, {4.1e-3, 3.1e-3, 3.1e-3}}, voxel, 5.0));
+}
+
+std::vector<float> values_of(const LevelSet& set, const std::array<int, 3>& block) {
+  std::vector<float> values(512);
+  set.read(block, 8, values.data());
+  return values;
+}
+
+}  // namespace
+
+TEST_CASE("two sheets that face each other share the band between them by distance",
+          "[core][triangle_walk][level_set]") {
+  const TriangleMesh mesh = slotted_block(GENERATE(0.5e-3, 0.2e-3));
+  const double voxel = 0.25e-3;
+  const LevelSet set = level_set_from_mesh(mesh, voxel, 8.0);
+  int count = 0, in_slot = 0;
+  for (const auto& block : set.blocks()) {
+    const std::vector<float> values = values_of(set, block);
+    for (int n = count % 11; n < 512; n += 37) {
+      const double value = values[static_cast<std::size_t>(n)];
+      if (std::abs(value) > set.half_width()) continue;
+      const Vector3d q = voxel * Vector3d(block[0] + n / 64, block[1] + n / 8 % 8, block[2] + n % 8);
+      ++count;
+      in_slot +=
+          std::abs(q.x() - 0.7e-3) < 0.8e-3 && std::abs(q.y()) < 3e-3 && q.z() > -1.5e-3 && q.z() < 3e-3;
+      REQUIRE(std::abs(value) == Approx(nearest_of_all(mesh, q)).margin(1e-9));
+    }
+  }
+  CHECK(count > 500);
+  CHECK(in_slot > 20);
+}
+
+TEST_CASE("outside its region a level set still tells inside from outside", "[core][level_set]") {
+  const TriangleMesh mesh = slotted_block(0.5e-3);
+  const double voxel = 0.25e-3;
+  Box region = everywhere;
+  region.low[2] = 0.5e-3;
+  const LevelSet whole = level_set_from_mesh(mesh, voxel, 8.0),
+                 part = level_set_from_mesh(mesh, voxel, 8.0, Sides::closed, region);
+  CHECK(5 * part.active_voxels() < 4 * whole.active_voxels());
+  for (const auto& block : whole.blocks()) {
+    const std::vector<float> expected = values_of(whole, block), found = values_of(part, block);
+    if (voxel * (block[2] + 7) >= region.low[2]) {
+      REQUIRE(found == expected);
+      continue;
+    }
+    for (std::size_t n = 0; n < found.size(); ++n)
+      REQUIRE(std::signbit(found[n]) == std::signbit(expected[n]));
+  }
+}

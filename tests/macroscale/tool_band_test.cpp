@@ -366,6 +366,41 @@ TEST_CASE("pressed beyond the band, the contact energy is not finite, so no line
   CHECK(system.potential(step, state.x).compaction == 0.0);
 }
 
+TEST_CASE("a band of a region is the whole band there, and an error elsewhere", "[macroscale][tool_band]") {
+  const TriangleMesh punch = test::punch_mesh(20e-3, 60e-3, 30);
+  ToolBandSpec spec{.voxel = 0.5e-3, .half_width = 3e-3};
+  const ToolBand whole = tool_band(punch, spec, "tools.punch");
+  spec.region.high[2] = 30e-3;
+  const ToolBand part = tool_band(punch, spec, "tools.punch");
+  CHECK(10 * part.bricks() < 7 * whole.bricks());
+  std::mt19937 random(3);
+  const auto where = in_box({-25e-3, -25e-3, -5e-3}, {25e-3, 25e-3, 65e-3});
+  int inside = 0, outside = 0;
+  for (int n = 0; n < 20000; ++n) {
+    const Vector3d x = where(random);
+    const Distance expected = evaluate(whole, x), found = evaluate(part, x);
+    if (x.z() <= spec.region.high[2]) {
+      REQUIRE(found.distance == expected.distance);
+      REQUIRE(found.normal == expected.normal);
+      REQUIRE(part.rough_distance(x) == expected.distance);
+      continue;
+    }
+    REQUIRE(found.distance == -infinity);
+    REQUIRE(beyond_band(part, x));
+    const double rough = part.rough_distance(x);
+    REQUIRE(std::isinf(rough));
+    inside += rough < 0.0;
+    outside += rough > 0.0;
+    if (rough < 0.0) REQUIRE(expected.distance < 0.0);
+    const bool far_from_top = x.z() < 50e-3;
+    const double depth = -distance(HemisphereShape{{0, 0, 0}, 20e-3}, x).distance;
+    if (far_from_top && depth > 9e-3)
+      REQUIRE(rough < 0.0);  // deeper than the diagonal of a block and its rim
+  }
+  CHECK(inside > 500);
+  CHECK(outside > 500);
+}
+
 TEST_CASE("a sheet has a band on both sides, told by its normals", "[macroscale][tool_band]") {
   // The lower half of a ball as a bowl, normals downwards and outwards; far from its rim.
   test::Meridian meridian;
