@@ -2,8 +2,6 @@
 #include <algorithm>
 #include <catch2/catch.hpp>
 
-#include <unistd.h>
-
 #include <cmath>
 #include <filesystem>
 #include <fstream>
@@ -14,32 +12,17 @@
 #include "pipeline/commands.h"
 #include "pipeline/outputs.h"
 #include "pipeline/stages.h"
-#include "tool_settings.h"
+#include "scratch.h"
 
 using namespace heddle;
+using namespace heddle::test;
 namespace fs = std::filesystem;
 
 namespace {
 
-// A folder of this test process alone, removed at the end.
-class Scratch {
- public:
-  Scratch() : path_(fs::temp_directory_path() / ("heddle-run-test-" + std::to_string(getpid()))) {
-    fs::create_directories(path_);
-  }
-  ~Scratch() {
-    std::error_code ignored;  // a folder that stays behind is no failure of the test
-    fs::remove_all(path_, ignored);
-  }
-  fs::path operator/(const std::string& name) const { return path_ / name; }
-
- private:
-  fs::path path_;
-};
-
 const std::vector<std::string> small = {"blank.spacing=20 mm", "process.steps=12",
                                         "process.punch={stroke: 30 mm, time: 0.18 s, slow_down: 0.01 s}",
-                                        heddle::test::tools_by_shape};
+                                        "blank.grid_error=off", tools_by_shape};
 
 pipeline::RunOptions options_for(const std::string& config, const fs::path& output,
                                  std::vector<std::string> settings) {
@@ -51,11 +34,6 @@ pipeline::RunOptions options_for(const std::string& config, const fs::path& outp
   return options;
 }
 
-std::vector<std::string> with(std::vector<std::string> base, const std::string& more) {
-  base.push_back(more);
-  return base;
-}
-
 // One number of summary.json, by its key.
 double number(const fs::path& folder, const std::string& key) {
   const std::string text = pipeline::read_file(folder / "summary.json");
@@ -64,22 +42,15 @@ double number(const fs::path& folder, const std::string& key) {
   return std::stod(text.substr(at + key.size() + 4));
 }
 
+// A stamping of its own; the unit cell of the shipped weave, which takes longer than a small stamping, may
+// come out of a cache.
 double stamped(const Scratch& scratch, const std::string& name, const std::vector<std::string>& settings,
                const std::string& key) {
-  REQUIRE(pipeline::run_case(options_for("thermostamping.yaml", scratch / name, settings)) ==
-          pipeline::exit_done);
+  auto options = options_for("thermostamping.yaml", scratch / name, settings);
+  options.cache = scratch / (name + "-cache");
+  warm(options.cache);
+  REQUIRE(pipeline::run_case(options) == pipeline::exit_done);
   return number(scratch / name, key);
-}
-
-// Every file below a folder but those that hold times.
-std::map<std::string, std::string> contents(const fs::path& folder) {
-  std::map<std::string, std::string> files;
-  for (const auto& entry : fs::recursive_directory_iterator(folder)) {
-    const std::string name = fs::relative(entry.path(), folder).string();
-    if (entry.is_regular_file() && name != "manifest.json" && name != "log.txt")
-      files[name] = pipeline::read_file(entry.path());
-  }
-  return files;
 }
 
 }  // namespace
@@ -124,7 +95,8 @@ TEST_CASE("the shipped friction test and unit cell run", "[pipeline][run]") {
 
 TEST_CASE("a folder that holds another case is left alone without --force", "[pipeline][run][wrong input]") {
   const Scratch scratch;
-  const auto unit_cell = options_for("unit_cell.yaml", scratch / "x", {});
+  auto unit_cell = options_for("unit_cell.yaml", scratch / "x", {});
+  unit_cell.cache = HEDDLE_TEST_CACHE;
   REQUIRE(pipeline::weave_case(unit_cell) == pipeline::exit_done);
   const auto before = contents(scratch / "x");
   auto other = options_for("friction_test.yaml", scratch / "x", {});
@@ -204,7 +176,8 @@ TEST_CASE("the weave acts on friction: a wider gap lowers the contact area, mu a
   const Scratch scratch;
   // To the full stroke: early on the punch force is mostly tow straightening, which a wider gap changes as
   // well.
-  const std::vector<std::string> deep = {"blank.spacing=16 mm", "process.steps=35"};
+  const std::vector<std::string> deep = {"blank.spacing=16 mm", "process.steps=35", "blank.grid_error=off",
+                                         tools_by_shape};
   const double narrow = stamped(scratch, "narrow", deep, "peak_punch_force_N");
   const double wide = stamped(scratch, "wide", with(deep, "weave.gap=1.5 mm"), "peak_punch_force_N");
   CHECK(number(scratch / "wide", "contact_area_fraction_binder") <
@@ -237,8 +210,7 @@ TEST_CASE(
     "is",
     "[pipeline][run][slow]") {
   const Scratch scratch;
-  const std::vector<std::string> coulomb = {"friction={law: coulomb, coefficient: 0.3}",
-                                            heddle::test::tools_by_shape};
+  const std::vector<std::string> coulomb = {"friction={law: coulomb, coefficient: 0.3}", tools_by_shape};
   const auto peak = [&](const std::string& name, const std::string& rate, const std::string& speed,
                         const std::string& mass) {
     return stamped(
@@ -263,10 +235,10 @@ TEST_CASE("a stamping says what its grid leaves, runs the companion once, and is
           "[pipeline][run][grid_error]") {
   const Scratch scratch;
   const std::vector<std::string> fine = {"blank.spacing=16 mm", "process.steps=8",
-                                         "process.punch={stroke: 30 mm, time: 0.18 s}",
-                                         heddle::test::tools_by_shape};
+                                         "process.punch={stroke: 30 mm, time: 0.18 s}", tools_by_shape};
   auto options = options_for("thermostamping.yaml", scratch / "on", fine);
   options.cache = scratch / "cache";
+  warm(options.cache);
   REQUIRE(pipeline::run_case(options) == pipeline::exit_done);
   const fs::path macroscale = scratch / "on" / "macroscale";
   // First order: what is left is the change to the companion over (32 mm / 16 mm - 1); the change at the peak
@@ -331,6 +303,7 @@ TEST_CASE("the orientation study stamps each blank, pulls each sample and report
   settings = with(settings, "process.steps=5");
   auto options = options_for("orientation.yaml", scratch / "study", settings);
   options.cache = scratch / "cache";
+  warm(options.cache);
   REQUIRE(pipeline::run_case(options) == pipeline::exit_done);
   const fs::path study = scratch / "study";
   for (const char* file : {"table.csv", "report.html", "friction/friction_test.csv",
@@ -358,6 +331,7 @@ TEST_CASE("the orientation study stamps each blank, pulls each sample and report
                         with(with(settings, "orientation_study.friction=[0 deg, 45 deg]"),
                              "effects={orientation: {amplitude: 0.1}}"));
   options.cache = scratch / "cache";
+  warm(options.cache);
   REQUIRE(pipeline::run_case(options) == pipeline::exit_done);
   const std::string page = pipeline::read_file(scratch / "oriented/report.html");
   CHECK(page.find("at every angle by construction") == std::string::npos);
@@ -379,7 +353,7 @@ TEST_CASE("tools from the shipped STEP files stamp the same part as the shapes t
   std::vector<std::string> settings = small;
   const double shapes = stamped(scratch, "shapes", settings, "peak_punch_force_N");
   const double shear = number(scratch / "shapes", "shear_angle_max_deg");
-  settings.back() = heddle::test::tools_by_file;
+  settings.back() = tools_by_file;
   CHECK(stamped(scratch, "files", settings, "peak_punch_force_N") == Approx(shapes).epsilon(0.02));
   CHECK(number(scratch / "files", "shear_angle_max_deg") == Approx(shear).margin(0.5));
   CHECK(fs::exists(scratch / "files/inputs/tools.punch.file.step"));
@@ -390,7 +364,7 @@ TEST_CASE(
     "[pipeline][run][tools][slow]") {
   const Scratch scratch;
   const double files = stamped(scratch, "files", {}, "peak_punch_force_N");
-  const double shapes = stamped(scratch, "shapes", {heddle::test::tools_by_shape}, "peak_punch_force_N");
+  const double shapes = stamped(scratch, "shapes", {tools_by_shape}, "peak_punch_force_N");
   CHECK(files == Approx(shapes).epsilon(0.003));
   CHECK(number(scratch / "files", "shear_angle_max_deg") ==
         Approx(number(scratch / "shapes", "shear_angle_max_deg")).margin(0.1));

@@ -1,6 +1,8 @@
 heddle_test(run SOURCES run_test.cpp effects_test.cpp LIBRARIES heddle::run)
 # Runs that are killed, stopped, reused and listed; some through the built program.
 heddle_test(resume SOURCES cache_test.cpp friction_store_test.cpp resume_test.cpp case_list_test.cpp LIBRARIES heddle::run)
-target_compile_definitions(test_resume PRIVATE HEDDLE_PROGRAM="$<TARGET_FILE:heddle>"
-                           HEDDLE_TEST_CACHE="${CMAKE_CURRENT_BINARY_DIR}/cache")
+target_compile_definitions(test_resume PRIVATE HEDDLE_PROGRAM="$<TARGET_FILE:heddle>")
+foreach(program test_run test_resume)
+  target_compile_definitions(${program} PRIVATE HEDDLE_TEST_CACHE="${CMAKE_CURRENT_BINARY_DIR}/cache")
+endforeach()
 add_dependencies(test_resume heddle)
