@@ -9,26 +9,20 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <chrono>
 #include <cmath>
 #include <cstdio>
 #include <cstdlib>
-#include <ctime>
-#include <filesystem>
-#include <fstream>
-#include <functional>
-#include <limits>
 #include <memory>
-#include <numbers>
 #include <random>
-#include <string>
 #include <vector>
 
+#include "benchmarks/measure.h"
 #include "macroscale/tool_band.h"
 #include "tests/macroscale/tool_meshes.h"
 
 using namespace heddle;
 using namespace heddle::macroscale;
+using namespace heddle::benchmark;
 using Eigen::Vector3d;
 
 namespace {
@@ -36,25 +30,6 @@ namespace {
 constexpr double radius = 70e-3, height = 200e-3;  // the shipped punch, long enough for the whole blank
 constexpr double blank = 320e-3, half_thickness = 0.75e-3;
 constexpr int nodes_a_side = 73;  // the shipped case: 5329 nodes
-
-double seconds(const std::function<void()>& work) {
-  const auto start = std::chrono::steady_clock::now();
-  work();
-  return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
-}
-
-double best_seconds(int repeats, const std::function<void()>& work) {
-  double best = std::numeric_limits<double>::infinity();
-  for (int k = 0; k < repeats; ++k) best = std::min(best, seconds(work));
-  return best;
-}
-
-double peak_megabytes() {
-  std::ifstream status("/proc/self/status");
-  for (std::string line; std::getline(status, line);)
-    if (line.starts_with("VmHWM:")) return std::stod(line.substr(6)) * 1024e-6;
-  return 0.0;
-}
 
 // The blank wrapped over dome and wall by arc length, half a thickness off the tool: every node in the band.
 std::vector<Vector3d> formed_blank() {
@@ -94,13 +69,6 @@ double bare_seconds(std::size_t floats, std::size_t count, double& sum) {
   });
 }
 
-std::string today() {
-  const std::time_t now = std::time(nullptr);
-  char text[16];
-  std::strftime(text, sizeof text, "%Y-%m-%d", std::gmtime(&now));
-  return text;
-}
-
 }  // namespace
 
 int main(int argc, char** argv) {
@@ -108,12 +76,10 @@ int main(int argc, char** argv) {
                           .half_width = 1e-3 * (argc > 2 ? std::atof(argv[2]) : 3.0)};
   const TriangleMesh mesh = test::punch_mesh(radius, height, 93);
   double estimate = 0.0;
-  const double check_time = seconds([&] { estimate = 1e-6 * estimated_memory(mesh, spec); });
+  const double check_time = time_of([&] { estimate = 1e-6 * estimated_memory(mesh, spec); }).wall;
   std::unique_ptr<const ToolBand> band;
-  const std::clock_t cpu = std::clock();
-  const double build =
-      seconds([&] { band = std::make_unique<const ToolBand>(tool_band(mesh, spec, "tools.punch")); });
-  const double build_cpu = static_cast<double>(std::clock() - cpu) / CLOCKS_PER_SEC;
+  const auto [build, build_cpu] =
+      time_of([&] { band = std::make_unique<const ToolBand>(tool_band(mesh, spec, "tools.punch")); });
   const double peak = peak_megabytes();
 
   std::vector<Vector3d> nodes = formed_blank();
@@ -139,18 +105,14 @@ int main(int argc, char** argv) {
       "times "
       "the limit\n",
       in_order, shuffled, bare, in_order / bare);
-  const std::filesystem::path file =
-      std::filesystem::path(HEDDLE_SOURCE_DIR) / "benchmarks/results/contact_query.csv";
-  std::filesystem::create_directories(file.parent_path());
-  const bool is_new = !std::filesystem::exists(file);
-  std::ofstream out(file, std::ios::app);
-  if (is_new)
-    out << "date,triangles,voxel_mm,half_width_mm,build_s,build_cpu_s,peak_memory_MB,band_MB,nodes,query_"
-           "mesh_order_ns,"
-           "query_shuffled_ns,bare_27_floats_ns,query_over_bare\n";
-  out << fmt::format("{},{},{:g},{:g},{:.2f},{:.2f},{:.0f},{:.0f},{},{:.1f},{:.1f},{:.2f},{:.1f}\n", today(),
-                     mesh.triangles.size(), 1e3 * spec.voxel, 1e3 * spec.half_width, build, build_cpu, peak,
-                     1e-6 * static_cast<double>(band->memory()), nodes.size(), in_order, shuffled, bare,
-                     in_order / bare);
-  return out ? 0 : 1;
+  const bool written =
+      append_row("contact_query",
+                 "date,triangles,voxel_mm,half_width_mm,build_s,build_cpu_s,peak_memory_MB,band_MB,nodes,"
+                 "query_mesh_order_ns,"
+                 "query_shuffled_ns,bare_27_floats_ns,query_over_bare",
+                 fmt::format("{},{},{:g},{:g},{:.2f},{:.2f},{:.0f},{:.0f},{},{:.1f},{:.1f},{:.2f},{:.1f}",
+                             today(), mesh.triangles.size(), 1e3 * spec.voxel, 1e3 * spec.half_width, build,
+                             build_cpu, peak, 1e-6 * static_cast<double>(band->memory()), nodes.size(),
+                             in_order, shuffled, bare, in_order / bare));
+  return written ? 0 : 1;
 }
