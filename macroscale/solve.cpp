@@ -127,6 +127,22 @@ void demand_finite(const System& system, const VectorXd& values, const char* qua
                                        name_of(system, static_cast<int>(k)), k % 3, time));
 }
 
+// The first node whose distance to a tool is not known because it lies too deep inside or off the room that
+// the tool's distances cover, in words; "" if there is none. Contact has no energy there.
+std::string node_beyond_tools(const System& system, const StepData& step, const VectorXd& x) {
+  const Scene& scene = system.scene();
+  for (int k = 0; k < static_cast<int>(scene.tools.size()); ++k)
+    for (int i = 0; i < scene.blank.nodes(); ++i) {
+      if (std::isfinite(system.tool_contact(step, x, k, i).surface.distance)) continue;
+      const Vector3d at = 1e3 * x.segment<3>(3 * i);
+      return fmt::format(
+          "node {} at ({:.3g}, {:.3g}, {:.3g}) mm is deeper in the {} or further off it than its distances "
+          "are known",
+          i, at.x(), at.y(), at.z(), name_of(scene.tools[k].role));
+    }
+  return "";
+}
+
 // Newton direction. The unfiltered Hessian is tried where the last iteration took a full step (its quadratic
 // tail is worth a failed factorisation now and then), then the projected one, then a growing shift.
 struct Direction {
@@ -185,6 +201,7 @@ struct Pass {
 Pass minimise(System& system, const StepData& step, VectorXd& x, const SolveOptions& options,
               double tolerance, StepSummary& summary) {
   bool full_step = true;
+  if (std::string lost = node_beyond_tools(system, step, x); !lost.empty()) return {false, std::move(lost)};
   VectorXd g = system.gradient(step, x);
   double energy = system.potential(step, x).total();
   for (int iteration = 0; iteration <= options.newton_limit; ++iteration) {
@@ -208,6 +225,7 @@ Pass minimise(System& system, const StepData& step, VectorXd& x, const SolveOpti
 
     double alpha = 1.0;
     bool accepted = false;
+    std::string lost;  // the node that kept the last trial from having an energy
     for (int k = 0; k < options.line_search_limit; ++k, alpha *= 0.5) {
       const VectorXd trial = x + alpha * direction.dx;
       const double trial_energy = system.potential(step, trial).total();
@@ -219,6 +237,7 @@ Pass minimise(System& system, const StepData& step, VectorXd& x, const SolveOpti
         accepted = true;
         break;
       }
+      if (!std::isfinite(change)) lost = node_beyond_tools(system, step, trial);
     }
     if (!accepted) {
       if (direction.exact) {  // the exact direction may climb where the potential is not convex: project and
@@ -226,7 +245,7 @@ Pass minimise(System& system, const StepData& step, VectorXd& x, const SolveOpti
         full_step = false;
         continue;
       }
-      return {worst.value <= 10.0 * tolerance, "line search found no decrease"};
+      return {worst.value <= 10.0 * tolerance, lost.empty() ? "line search found no decrease" : lost};
     }
     const double moved = alpha * direction.dx.cwiseAbs().maxCoeff();
     full_step = alpha == 1.0 && size <= options.largest_increment;
@@ -311,8 +330,8 @@ std::string fault_of(const System& system, const StepData& step, const State& en
       const double approach = system.tool_contact(step, end.x, k, i).normal.approach;
       if (approach > system.compaction().x().back())
         return fmt::format(
-            "node {} is pressed {:.3f} mm into tool {}, beyond the compaction table ({:.3f} mm)", i,
-            1e3 * approach, k, 1e3 * system.compaction().x().back());
+            "node {} is pressed {:.3f} mm into the {}, beyond the compaction table ({:.3f} mm)", i,
+            1e3 * approach, name_of(scene.tools[k].role), 1e3 * system.compaction().x().back());
     }
   return "";
 }

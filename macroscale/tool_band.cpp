@@ -336,10 +336,6 @@ Distance evaluate(const ToolBand& band, const Vector3d& x) {
   return band.evaluate(x);
 }
 
-bool beyond_band(const ToolBand& band, const Vector3d& x) {
-  return !(band.evaluate(x).distance >= -band.half_width());
-}
-
 double estimated_memory(const TriangleMesh& mesh, const ToolBandSpec& spec) {
   const MeshSize size = size_of(mesh);
   const double area_in_region = size_of(mesh, larger(spec.region, spec.half_width)).area;

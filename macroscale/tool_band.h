@@ -90,10 +90,6 @@ class ToolBand {
 /// is infinite and a line search takes a shorter step. Never "no contact".
 Distance evaluate(const ToolBand& band, const Eigen::Vector3d& x);
 
-/// Whether the band does not know the distance at x, which lies too deep inside the tool or outside the
-/// band's region: an error of the caller, who knows node and tool. NaN counts as such.
-bool beyond_band(const ToolBand& band, const Eigen::Vector3d& x);
-
 /// Faults of a mesh and a specification that would keep a band from being built or trusted, without building
 /// it.
 /// @param key  dotted path of the tool in the configuration, for instance "tools.punch"

@@ -58,9 +58,6 @@ Shape shape_of_numbers(const StampingSpec& spec, Role role) {
 const std::optional<ToolFileSpec>& file_of(const StampingSpec& spec, Role role) {
   return role == Role::punch ? spec.punch.file : role == Role::die ? spec.die.file : spec.binder.file;
 }
-std::string name_of(Role role) {
-  return role == Role::punch ? "punch" : role == Role::die ? "die" : "binder";
-}
 std::string key_of(Role role) {
   return "tools." + name_of(role);
 }

@@ -79,6 +79,10 @@ Distance evaluate(const BandShape& tool, const Vector3d& x) {
 
 }  // namespace
 
+std::string name_of(Role role) {
+  return role == Role::punch ? "punch" : role == Role::die ? "die" : "binder";
+}
+
 Distance distance(const Shape& shape, const Vector3d& x) {
   return std::visit([&](const auto& s) { return evaluate(s, x); }, shape);
 }

@@ -62,6 +62,7 @@ Distance distance(const Shape& shape, const Eigen::Vector3d& x);
 enum class Motion { fixed, driven, loaded };
 
 enum class Role { punch, die, binder };
+std::string name_of(Role role);  ///< as in the configuration
 
 struct Tool {
   Role role = Role::die;

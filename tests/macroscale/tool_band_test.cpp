@@ -8,6 +8,7 @@
 #include <random>
 
 #include "core/problem.h"
+#include "macroscale/solve.h"
 #include "macroscale/system.h"
 #include "tests/derivative_check.h"
 #include "tests/macroscale/sample_fabric.h"
@@ -47,6 +48,11 @@ ToolBand torus_band(double voxel, double half_width = 2e-3) {
   return ToolBand(level_set_from_distance(d, {{-r, -r, -ring_fillet}, {r, r, ring_fillet}}, voxel,
                                           half_width / voxel + ToolBand::rim),
                   half_width);
+}
+
+// Whether the band does not know the distance.
+bool beyond_band(const ToolBand& band, const Vector3d& x) {
+  return !std::isfinite(evaluate(band, x).distance);
 }
 
 struct Error {
@@ -364,6 +370,15 @@ TEST_CASE("pressed beyond the band, the contact energy is not finite, so no line
   CHECK_FALSE(std::isfinite(system.potential(step, state.x).compaction));
   step.tool_z = {0.05};
   CHECK(system.potential(step, state.x).compaction == 0.0);
+
+  // A tool that jumps onto the blank in one step: the step is refused, and says who is where.
+  State above = state, end;
+  above.tool_z = {0.05};
+  SolveOptions options;
+  options.frictionless = true;
+  const StepSummary refused = advance(system, above, 5e-3, {0.0}, nullptr, options, end, step);
+  CHECK_FALSE(refused.converged);
+  CHECK_THAT(refused.reason, Catch::Contains("node 0 at (-10, -10, 0) mm is deeper in the punch"));
 }
 
 TEST_CASE("a band of a region is the whole band there, and an error elsewhere", "[macroscale][tool_band]") {
