@@ -224,6 +224,13 @@ void demand_sound_input(const Model& start, std::span<const FrictionTestRow> row
   if (!problems.empty()) throw InputError(std::move(problems));
 }
 
+FrictionRig with_plate_area(FrictionRig rig, double area) {
+  rig.plate_area = area;
+  return rig;
+}
+
+}  // namespace
+
 CalibrationBox box_of(std::span<const FrictionTestResult> results) {
   CalibrationBox box{.hersey_low = 1e300,
                      .hersey_high = 0.0,
@@ -242,13 +249,6 @@ CalibrationBox box_of(std::span<const FrictionTestResult> results) {
   }
   return box;
 }
-
-FrictionRig with_plate_area(FrictionRig rig, double area) {
-  rig.plate_area = area;
-  return rig;
-}
-
-}  // namespace
 
 Calibration calibrate(const Model& start, std::span<const FrictionTestRow> rows, const FrictionRig& rig,
                       const AreaFunction& area, const CalibrationOptions& options) {

@@ -54,6 +54,9 @@ struct CalibrationOptions {
 Calibration calibrate(const Model& start, std::span<const FrictionTestRow> rows, const FrictionRig& rig,
                       const AreaFunction& area = {}, const CalibrationOptions& options = {});
 
+/// The smallest box that holds what the law saw in these tests.
+CalibrationBox box_of(std::span<const FrictionTestResult> results);
+
 /// The same at both ends of the plate area band: how far an unknown plate area moves the law elsewhere.
 struct CalibrationBand {
   Calibration low, assumed, high;

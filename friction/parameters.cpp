@@ -85,16 +85,8 @@ ParameterSlopes law_slopes(const HerseyLinear& law, const Model& model, const Co
 
 template <class AnyLaw>
 ParameterSlopes law_slopes(const AnyLaw&, const Model&, const Context&) {
-  throw std::logic_error("friction::parameter_slopes: a law without slopes of its own");  // see exact()
-}
-
-/// Whether law_slopes and shift below say it all.
-bool exact(const Model& model) {
-  const EffectStages stages = stages_of(model.effects);
-  const bool known = std::holds_alternative<Coulomb>(model.law) ||
-                     std::holds_alternative<HerseyPower>(model.law) ||
-                     std::holds_alternative<HerseyLinear>(model.law);
-  return known && model.rheology.of_the_film() && !stages.film && !stages.coefficient;
+  throw std::logic_error(
+      "friction::parameter_slopes: a law without slopes of its own");  // see has_exact_slopes
 }
 
 /// (f(+step) - f(-step)) / (2 step)
@@ -161,8 +153,17 @@ void set_parameters(Model& model, const std::vector<double>& values) {
   if (auto& effect = model.effects.tool_temperature_shift) effect->slope = values[next];
 }
 
+// Where law_slopes and shift say it all.
+bool has_exact_slopes(const Model& model) {
+  const EffectStages stages = stages_of(model.effects);
+  const bool known = std::holds_alternative<Coulomb>(model.law) ||
+                     std::holds_alternative<HerseyPower>(model.law) ||
+                     std::holds_alternative<HerseyLinear>(model.law);
+  return known && model.rheology.of_the_film() && !stages.film && !stages.coefficient;
+}
+
 ParameterSlopes parameter_slopes(const Model& model, const Context& context, const ContactState& state) {
-  if (!exact(model)) return differences(model, context, state);
+  if (!has_exact_slopes(model)) return differences(model, context, state);
   ParameterSlopes slopes =
       std::visit([&](const auto& law) { return law_slopes(law, model, context); }, model.law);
   if (const auto& effect = model.effects.tool_temperature_shift) shift(*effect, context, slopes);

@@ -30,9 +30,11 @@ struct ParameterSlopes {
   double dmu_dlog_hersey;
   std::vector<double> dmu_dparameter;  ///< in the order of parameters_of(model)
 };
+/// Whether the slopes below are exact, not differences: Coulomb, power and linear law on the film's power law
+/// with no effect on but the shift.
+bool has_exact_slopes(const Model& model);
 /// Unlike evaluate, leaves a mu that is negative or not finite to the caller: a search may pass through it.
-/// Exact for Coulomb, power and linear law on the film's power law with no effect on but the shift; central
-/// differences elsewhere (relative error about 1e-9).
+/// Exact where has_exact_slopes; central differences elsewhere (relative error about 1e-9).
 /// @param state  of the contact at the moment of the test
 ParameterSlopes parameter_slopes(const Model& model, const Context& context, const ContactState& state = {});
 

@@ -160,6 +160,8 @@ struct Elsewhere {
 
 const char* const of_fabric = "mesoscale/fabric_properties_test.cpp";
 const char* const of_json = "pipeline/outputs_test.cpp";
+const char* const of_coupons = "friction/coupon_data_test.cpp";
+const char* const of_fit = "friction/coupon_fit_test.cpp";
 const char* const of_outline = "macroscale/outline_test.cpp";
 
 const std::vector<Elsewhere> elsewhere{
@@ -262,6 +264,42 @@ const std::vector<Elsewhere> elsewhere{
      "of a command, not of a configuration"},
     {"cases.record", "pipeline/case_list_test.cpp",
      "a record that cannot be read counts as none, and says so", "of a command, not of a configuration"},
+    {"friction.coupons.column.unknown", of_coupons,
+     "a table of coupons is refused with every problem and its line", "of --data, not of a configuration"},
+    {"friction.coupons.column.missing", of_coupons,
+     "a table of coupons is refused with every problem and its line", "of --data, not of a configuration"},
+    {"friction.coupons.column.twice", of_coupons,
+     "a table of coupons is refused with every problem and its line", "of --data, not of a configuration"},
+    {"friction.coupons.number", of_coupons, "a table of coupons is refused with every problem and its line",
+     "of --data, not of a configuration"},
+    {"friction.coupons.empty", of_coupons, "a table of coupons is refused with every problem and its line",
+     "of --data, not of a configuration"},
+    {"friction.coupons.positive", of_coupons, "a table of coupons is refused with every problem and its line",
+     "of --data, not of a configuration"},
+    {"friction.coupons.force", of_coupons, "a table of coupons is refused with every problem and its line",
+     "of --data, not of a configuration"},
+    {"friction.coupons.history", of_coupons, "a table of coupons is refused with every problem and its line",
+     "of --data, not of a configuration"},
+    {"friction.coupons.unit.temperature", of_coupons,
+     "a table of coupons is refused with every problem and its line", "of --data, not of a configuration"},
+    {"friction.coupons.unit.force", of_coupons,
+     "a table of coupons is refused with every problem and its line", "of --data, not of a configuration"},
+    {"calibrate.parameters.none", of_fit, "a wish that cannot be answered is refused with every reason",
+     "known once the data are read"},
+    {"calibrate.parameters.acts", of_fit, "a wish that cannot be answered is refused with every reason",
+     "known once the data are read"},
+    {"calibrate.parameters.twice", of_fit, "a wish that cannot be answered is refused with every reason",
+     "known once the data are read"},
+    {"calibrate.bounds.order", of_fit, "a wish that cannot be answered is refused with every reason",
+     "known once the data are read"},
+    {"calibrate.bounds.start", of_fit, "a wish that cannot be answered is refused with every reason",
+     "known once the data are read"},
+    {"calibrate.prior.sd", of_fit, "a wish that cannot be answered is refused with every reason",
+     "known once the data are read"},
+    {"calibrate.data.rows", of_fit, "a wish that cannot be answered is refused with every reason",
+     "known once the data are read"},
+    {"calibrate.data.alike", of_fit, "a wish that cannot be answered is refused with every reason",
+     "known once the data are read"},
     {"environment.checkpoint_seconds", "pipeline/command_line_test.cpp",
      "a faulty interval in the environment is refused", "of a command, not of a configuration"},
 };

@@ -1,0 +1,364 @@
+#include "friction/calibration/coupon_data.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <map>
+#include <set>
+#include <tuple>
+
+#include "core/csv.h"
+#include "core/text_file.h"
+#include "core/units.h"
+
+namespace heddle::friction {
+
+namespace {
+
+/// One line of the table.
+struct Line {
+  int line = 0;
+  std::string name, condition, sample, day;
+  double velocity = 0.0, normal_force = 0.0, tool_temperature = 0.0, fabric_temperature = 0.0;
+  double orientation = 0.0, dwell = 0.0;
+  std::optional<double> time, displacement, force, other_force, measured_normal_force;
+};
+
+template <class Number>
+struct Column {
+  std::string_view name, unit;
+  Number Line::*member;
+  bool required = false;
+};
+
+constexpr std::array conditions{
+    Column<double>{"velocity_mm_s", "mm/s", &Line::velocity, true},
+    Column<double>{"normal_force_N", "N", &Line::normal_force, true},
+    Column<double>{"tool_temperature_C", "degC", &Line::tool_temperature, true},
+    Column<double>{"fabric_temperature_C", "degC", &Line::fabric_temperature, true},
+    Column<double>{"orientation_deg", "deg", &Line::orientation},
+    Column<double>{"dwell_s", "s", &Line::dwell}};
+constexpr std::array measurements{
+    Column<std::optional<double>>{"time_s", "s", &Line::time},
+    Column<std::optional<double>>{"displacement_mm", "mm", &Line::displacement},
+    Column<std::optional<double>>{"force_measured_N", "N", &Line::force},
+    Column<std::optional<double>>{"pull_force_N", "N", &Line::other_force},
+    Column<std::optional<double>>{"normal_force_measured_N", "N", &Line::measured_normal_force}};
+constexpr std::array<std::pair<std::string_view, std::string Line::*>, 4> names{
+    {{"case", &Line::name},
+     {"condition_id", &Line::condition},
+     {"sample_id", &Line::sample},
+     {"day_id", &Line::day}}};
+/// Written by friction tests, or no matter of the fit.
+constexpr std::array<std::string_view, 7> passed_over{
+    "friction_coefficient", "force_error",   "error",   "paper_error",
+    "force_paper_model_N",  "paper_force_N", "operator"};
+
+std::vector<std::string_view> known_columns() {
+  std::vector<std::string_view> list;
+  for (const auto& [name, member] : names) list.push_back(name);
+  for (const auto& column : conditions) list.push_back(column.name);
+  for (const auto& column : measurements) list.push_back(column.name);
+  return list;
+}
+
+/// "normal_force" of "normal_force_N" and of "normal_force_kN".
+std::string_view without_unit(std::string_view column) {
+  for (const std::string_view unit : {"_mm_s", "_m_s", "_mm_min", "_m_min", "_in_s"})
+    if (column.ends_with(unit)) return column.substr(0, column.size() - unit.size());
+  return column.substr(0, column.rfind('_'));
+}
+
+class CouponReader {
+ public:
+  CouponReader(const CsvTable& table, std::string file, Problems& problems)
+      : table_(table), file_(std::move(file)), problems_(problems) {}
+
+  std::vector<Line> lines() {
+    problems_.insert(problems_.end(), table_.problems.begin(), table_.problems.end());
+    check_columns();
+    std::vector<Line> lines;
+    for (const CsvRow& row : table_.rows) {
+      lines.emplace_back();
+      lines.back().line = row.line;
+      for (std::size_t i = 0; i < row.cells.size(); ++i)
+        read_cell(lines.back(), header()[i], row.cells[i], row.line);
+    }
+    // Our own tables hold the model's force under pull_force_N, beside what was measured.
+    if (!has("force_measured_N"))
+      for (Line& line : lines) line.force = line.other_force;
+    return lines;
+  }
+
+  bool has(std::string_view column) const { return std::ranges::count(header(), column) > 0; }
+
+  void add(Rule id, std::string_view key, std::string value, std::string rule, std::string way_out,
+           int line) {
+    problems_.push_back({.id = id,
+                         .key = std::string(key),
+                         .value = std::move(value),
+                         .rule = std::move(rule),
+                         .way_out = std::move(way_out),
+                         .file = file_,
+                         .line = line});
+  }
+
+ private:
+  const std::vector<std::string>& header() const { return table_.header.cells; }
+
+  void check_columns() {
+    const auto known = known_columns();
+    for (const std::string& name : header()) {
+      if (std::ranges::count(known, name) > 0 || std::ranges::count(passed_over, name) > 0) continue;
+      const auto meant = std::ranges::find_if(
+          known, [&](std::string_view k) { return without_unit(k) == without_unit(name); });
+      add("friction.coupons.column.unknown"_rule, name, "", "is no column of a coupon table",
+          meant != known.end()
+              ? fmt::format("Convert its numbers and call it {}: the unit stands in the name.", *meant)
+              : fmt::format("Known columns: {}.", fmt::join(known, ", ")),
+          table_.header.line);
+    }
+    for (const auto& column : conditions)
+      if (column.required && !has(column.name)) report_missing(column.name);
+    if (!has("force_measured_N") && !has("pull_force_N")) report_missing("force_measured_N or pull_force_N");
+    const std::set<std::string> different(header().begin(), header().end());
+    if (different.size() < header().size())
+      add("friction.coupons.column.twice"_rule, "header", "", "names a column twice",
+          "Leave one of them out.", table_.header.line);
+  }
+
+  void report_missing(std::string_view name) {
+    add("friction.coupons.column.missing"_rule, name, "", "must be a column of the table",
+        fmt::format("Known columns: {}.", fmt::join(known_columns(), ", ")), table_.header.line);
+  }
+
+  void read_cell(Line& into, std::string_view name, const std::string& cell, int line) {
+    for (const auto& [known, member] : names)
+      if (known == name) into.*member = cell;
+    for (const auto& column : conditions)
+      if (column.name == name && (column.required || !cell.empty()))
+        read_number(cell, column.unit, name, line, [&](double value) { into.*column.member = value; });
+    for (const auto& column : measurements)
+      if (column.name == name && !cell.empty())
+        read_number(cell, column.unit, name, line, [&](double value) { into.*column.member = value; });
+  }
+
+  void read_number(const std::string& cell, std::string_view unit, std::string_view name, int line,
+                   const auto& store) {
+    const heddle::Reading reading = read_quantity(fmt::format("{} {}", cell, unit), unit);
+    if (reading.ok()) return store(reading.value);
+    add("friction.coupons.number"_rule, name, cell, fmt::format("must be a number in {}", unit),
+        "Write digits only; the unit stands in the column's name.", line);
+  }
+
+  const CsvTable& table_;
+  std::string file_;
+  Problems& problems_;
+};
+
+/// Lines of one piece of fabric under one condition.
+using Pull = std::vector<const Line*>;
+
+std::vector<Pull> pulls_of(const std::vector<Line>& lines) {
+  std::vector<Pull> pulls;
+  std::map<std::tuple<std::string, std::string, std::string, std::string>, std::size_t> place;
+  for (const Line& line : lines) {
+    const auto [at, fresh] =
+        place.try_emplace({line.condition, line.name, line.day, line.sample}, pulls.size());
+    // Without a sample_id each line is a piece of its own.
+    if (fresh || line.sample.empty())
+      pulls.push_back({&line});
+    else
+      pulls[at->second].push_back(&line);
+  }
+  return pulls;
+}
+
+/// Means of force, load and slip over the lines of one stretch.
+CouponRow row_of(const Pull& stretch) {
+  const Line& first = *stretch.front();
+  CouponRow row;
+  row.pull.name = !first.name.empty()        ? first.name
+                  : !first.condition.empty() ? fmt::format("{}/{}", first.condition, first.sample)
+                                             : fmt::format("line {}", first.line);
+  row.pull.velocity = first.velocity;
+  row.pull.tool_temperature = first.tool_temperature;
+  row.pull.fabric_temperature = first.fabric_temperature;
+  row.pull.orientation = first.orientation;
+  row.dwell = first.dwell;
+  row.line = first.line;
+  const auto count = static_cast<double>(stretch.size());
+  double force = 0.0, load = 0.0, slip = 0.0;
+  for (const Line* line : stretch) {
+    force += line->force.value_or(std::nan("")) / count;
+    load += line->measured_normal_force.value_or(line->normal_force) / count;
+    slip += line->displacement.value_or(0.0) / count;
+  }
+  row.pull.measured_force = force;
+  row.pull.normal_force = load;
+  if (slip > 0.0) row.slip = slip;
+  return row;
+}
+
+/// The lines of a pull in stretches of slip that are even in their logarithm; of one, the steady half.
+std::vector<Pull> stretches_of(const Pull& pull, int count) {
+  if (pull.size() == 1) return {pull};
+  double longest = 0.0, shortest = 1e300;
+  for (const Line* line : pull) {
+    longest = std::max(longest, *line->displacement);
+    if (*line->displacement > 0.0) shortest = std::min(shortest, *line->displacement);
+  }
+  std::vector<Pull> stretches(static_cast<std::size_t>(count));
+  for (const Line* line : pull) {
+    const double slip = *line->displacement;
+    if (count == 1 ? slip < 0.5 * longest : slip <= 0.0) continue;
+    const double share = count == 1 ? 0.0 : std::log(slip / shortest) / std::log(longest / shortest);
+    const auto at = static_cast<std::size_t>(std::clamp(share * count, 0.0, count - 1.0));
+    stretches[at].push_back(line);
+  }
+  std::erase_if(stretches, [](const Pull& stretch) { return stretch.empty(); });
+  return stretches;
+}
+
+/// Numbers the different keys in the order in which they come.
+template <class Key>
+class Numbering {
+ public:
+  std::size_t of(const Key& key) { return place_.try_emplace(key, place_.size()).first->second; }
+  std::size_t count() const { return place_.size(); }
+
+ private:
+  std::map<Key, std::size_t> place_;
+};
+
+void check_line(CouponReader& reader, const Line& line) {
+  const auto positive = [&](double value, std::string_view column, std::string_view unit) {
+    if (value > 0.0 && std::isfinite(value)) return;
+    reader.add("friction.coupons.positive"_rule, column, write_quantity(value, unit), "must be positive",
+               "Correct the line, or leave it out.", line.line);
+  };
+  positive(line.velocity, "velocity_mm_s", "mm/s");
+  positive(line.normal_force, "normal_force_N", "N");
+  if (line.measured_normal_force) positive(*line.measured_normal_force, "normal_force_measured_N", "N");
+  // Steel and melt stay far below; 453 degC is 180 degC in kelvin.
+  constexpr double too_hot = 593.15;
+  for (const auto& [value, column] : {std::pair{line.tool_temperature, "tool_temperature_C"},
+                                      std::pair{line.fabric_temperature, "fabric_temperature_C"}})
+    if (value > too_hot)
+      reader.add("friction.coupons.unit.temperature"_rule, column, write_quantity(value, "degC"),
+                 "lies above 320 degC, where polypropylene is no more; is it in kelvin or fahrenheit?",
+                 "Write it in degC.", line.line);
+}
+
+void check_force(CouponReader& reader, const CouponRow& row, int faces) {
+  const double force = *row.pull.measured_force;
+  if (!(force > 0.0 && std::isfinite(force)))
+    return reader.add("friction.coupons.force"_rule, "force_measured_N",
+                      std::isnan(force) ? "" : write_quantity(force, "N"), "must be a positive force",
+                      "Fill in the measured pull force, or leave the line out.", row.line);
+  if (!(row.pull.normal_force > 0.0)) return;  // said already
+  const double mu = measured_coefficient(row, faces);
+  if (mu > 5.0 || mu < 5e-3)
+    reader.add("friction.coupons.unit.force"_rule, "force_measured_N", write_quantity(force, "N"),
+               fmt::format("gives mu = F/({} N) = {:.3g}, which no fabric has; is one of the two forces in "
+                           "kN or in kg?",
+                           faces, mu),
+               "Write pull force and normal force both in N.", row.line);
+}
+
+/// What is no fault for certain, but would be if all rows had it.
+std::vector<std::string> odd_looks(const std::vector<CouponRow>& rows) {
+  double load = 0.0, speed = 0.0;
+  for (const CouponRow& row : rows) {
+    load = std::max(load, row.pull.normal_force);
+    speed = std::max(speed, row.pull.velocity);
+  }
+  std::vector<std::string> notes;
+  if (load < 10.0)
+    notes.push_back(fmt::format(
+        "No normal force is above {:.3g} N. A sled weighs as little; plates press with 200 to 4000 N: if the "
+        "table is in kN, multiply its forces by 1000.",
+        load));
+  if (speed < 1e-4)
+    notes.push_back(fmt::format(
+        "No pull is faster than {:.3g} mm/s. If the speeds are in m/s, multiply them by 1000.", 1e3 * speed));
+  return notes;
+}
+
+}  // namespace
+
+double measured_coefficient(const CouponRow& row, int faces) {
+  return *row.pull.measured_force / (faces * row.pull.normal_force);
+}
+
+CouponData parse_coupons(std::string_view text, const std::string& file, const CouponReduction& reduction) {
+  const CsvTable table = parse_csv(text, file);
+  Problems problems;
+  CouponReader reader(table, file, problems);
+  const std::vector<Line> lines = reader.lines();
+  if (lines.empty())
+    reader.add("friction.coupons.empty"_rule, "data", "", "must hold at least one pull",
+               "One line a pull, after the header line.", 0);
+  if (!problems.empty()) throw InputError(std::move(problems));
+  for (const Line& line : lines) check_line(reader, line);
+
+  CouponData data;
+  data.file = file;
+  using Condition = std::tuple<std::string, double, double, double, double, double, double>;
+  Numbering<Condition> conditions_seen;
+  Numbering<std::string> days;
+  std::size_t histories = 0;
+  for (const Pull& pull : pulls_of(lines)) {
+    const Line& first = *pull.front();
+    const bool whole = std::ranges::all_of(pull, [](const Line* l) { return l->displacement.has_value(); });
+    if (pull.size() > 1 && !whole) {
+      reader.add("friction.coupons.history"_rule, "displacement_mm", "",
+                 fmt::format("must be given where a sample has several lines ({} of sample {})", pull.size(),
+                             first.sample),
+                 "Give the displacement of each line, or each piece of fabric its own sample_id.",
+                 first.line);
+      continue;
+    }
+    if (pull.size() > 1) ++histories;
+    // Conditions named by the experimenter are alike though their measured numbers scatter.
+    const Condition condition = first.condition.empty()
+                                    ? Condition{"",
+                                                first.velocity,
+                                                first.normal_force,
+                                                first.tool_temperature,
+                                                first.fabric_temperature,
+                                                first.orientation,
+                                                first.dwell}
+                                    : Condition{first.condition, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0};
+    for (const Pull& stretch : stretches_of(pull, reduction.stretches)) {
+      CouponRow row = row_of(stretch);
+      row.condition = conditions_seen.of(condition);
+      row.day = days.of(first.day);
+      row.sample = data.samples.size();
+      check_force(reader, row, reduction.faces);
+      data.rows.push_back(std::move(row));
+    }
+    if (days.count() > data.days.size()) data.days.push_back(first.day);
+    data.samples.push_back(first.sample.empty() ? data.rows.back().pull.name : first.sample);
+  }
+  if (!problems.empty()) throw InputError(std::move(problems));
+  data.conditions = conditions_seen.count();
+  data.notes = odd_looks(data.rows);
+  if (histories > 0)
+    data.notes.push_back(reduction.stretches == 1
+                             ? fmt::format("{} histories were cut to the mean force over the second half of "
+                                           "their displacement.",
+                                           histories)
+                             : fmt::format("{} histories were cut to the mean forces of up to {} stretches "
+                                           "of displacement.",
+                                           histories, reduction.stretches));
+  return data;
+}
+
+CouponData read_coupons(const std::string& path, const CouponReduction& reduction) {
+  return parse_coupons(read_text_file(path), path, reduction);
+}
+
+}  // namespace heddle::friction
