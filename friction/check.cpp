@@ -178,7 +178,7 @@ void check_box(const CalibrationBox& box, Problems& problems) {
           ordered(box.hersey_low, box.hersey_high) && ordered(box.pressure_low, box.pressure_high) &&
               ordered(box.speed_low, box.speed_high),
           {.id = "friction.calibration.box_order"_rule,
-           .key = "friction.calibration",
+           .key = "friction.box",
            .value = fmt::format("Hs {}..{}, p {}..{} Pa, U {}..{} m/s", box.hersey_low, box.hersey_high,
                                 box.pressure_low, box.pressure_high, box.speed_low, box.speed_high),
            .rule = "must satisfy 0 <= low <= high for each",

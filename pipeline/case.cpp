@@ -154,6 +154,17 @@ macroscale::ContactPressure contact_pressure_of(const Settings& settings) {
                                                              : macroscale::ContactPressure::real;
 }
 
+void take_box(const Settings& settings, friction::CalibrationBox& box) {
+  const auto take_range = [&](const char* path, double& low, double& high) {
+    if (!settings.has(path)) return;
+    low = settings.pair(path)[0];
+    high = settings.pair(path)[1];
+  };
+  take_range("friction.box.hersey", box.hersey_low, box.hersey_high);
+  take_range("friction.box.pressure", box.pressure_low, box.pressure_high);
+  take_range("friction.box.speed", box.speed_low, box.speed_high);
+}
+
 FrictionSpec friction_of(const Settings& settings, const std::filesystem::path& folder) {
   FrictionSpec friction;
   try {
@@ -170,6 +181,7 @@ FrictionSpec friction_of(const Settings& settings, const std::filesystem::path& 
   take(settings, area, friction.rig.plate_area);
   friction.rig.plate_area_band = {friction.rig.plate_area, friction.rig.plate_area};
   take(settings, area + "_band", friction.rig.plate_area_band);
+  take_box(settings, friction.model.box);
   const bool stribeck = settings.is("friction.law", "stribeck");
   if (stribeck && settings.has("friction.calibration.data")) {
     friction.calibration_data = folder / settings.text("friction.calibration.data");
@@ -261,6 +273,7 @@ Case case_of(const ReadConfig& config, const std::filesystem::path& folder) {
     if (settings.has("orientation_study.friction"))
       result.orientation_study->friction = settings.many("orientation_study.friction");
   }
+  if (runs(Stage::calibrate)) result.calibrate = calibrate_of(settings);
   result.notes = config.notes;
   result.settings = settings;
   return result;
@@ -469,6 +482,7 @@ Problems check_between_keys(const Case& a_case, const ReadConfig& config) {
       append(problems, check_table(a_case.friction_test->data, false));
     append(problems, check_design(a_case.friction_test->design));
   }
+  if (a_case.calibrate) append(problems, check_calibrate(*a_case.calibrate, config.settings));
   if (a_case.stamping) {
     Problems of_stamping = macroscale::check(*a_case.stamping);
     if (a_case.settings.is("blank.shape", "drawing"))  // its corners are those of the drawing
@@ -619,6 +633,7 @@ std::vector<std::string> stage_lines(const Case& a_case) {
     lines.push_back(fmt::format("orientation study: {} blanks, {} friction samples",
                                 a_case.orientation_study->blanks.size(),
                                 a_case.orientation_study->friction.size()));
+  if (a_case.calibrate) lines.push_back("calibrate: by `heddle calibrate` alone, to its --data");
   return lines;
 }
 

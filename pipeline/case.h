@@ -9,6 +9,7 @@
 #include "friction/model.h"
 #include "macroscale/stamping.h"
 #include "mesoscale/cell_spec.h"
+#include "pipeline/calibrate_keys.h"
 #include "pipeline/config_reader.h"
 
 namespace heddle::pipeline {
@@ -47,6 +48,7 @@ struct Case {
   std::optional<macroscale::StampingSpec> stamping;
   bool grid_error = false;                                ///< the stamping is run once more on a coarser grid
   std::optional<OrientationStudySpec> orientation_study;  ///< runs the stamping once an angle
+  std::optional<CalibrateSpec> calibrate;                 ///< what `heddle calibrate` is to fit
   std::vector<std::string> notes;                         ///< keys not used, and values that are assumed
   Settings settings;                                      ///< every key behind the above
 };

@@ -84,12 +84,17 @@ int dispatch(const std::vector<std::string>& arguments, const Commands& commands
   RunOptions weave_options;
   RunOptions friction_options;
   CheckOptions check_options;
+  CalibrateOptions calibrate_options;
   const CLI::App* run =
       add_run(program, "run", "The whole chain: weave, friction, stamped part", run_options);
   program.get_subcommand("run")->add_flag("--resume", run_options.resume, "Go on from the last checkpoint");
   const CLI::App* check = add_check(program, check_options);
   const CLI::App* weave = add_run(program, "weave", "Unit cell only", weave_options);
-  add_run(program, "friction", "Friction test only", friction_options);
+  const CLI::App* friction = add_run(program, "friction", "Friction test only", friction_options);
+  add_run(program, "calibrate", "Numbers of the friction law from measured coupons", calibrate_options.run)
+      ->add_option("--data", calibrate_options.data, "Table of coupons (CSV)")
+      ->required()
+      ->check(CLI::ExistingFile);
 
   try {
     // CLI11 takes a vector from its end.
@@ -101,14 +106,15 @@ int dispatch(const std::vector<std::string>& arguments, const Commands& commands
     program.exit(error, std::cout, std::cerr);
     return exit_bad_input;
   }
-  for (RunOptions* options : {&run_options, &weave_options, &friction_options}) {
+  for (RunOptions* options : {&run_options, &weave_options, &friction_options, &calibrate_options.run}) {
     options->cache = cache_folder();
     options->checkpoint_interval = checkpoint_interval(options->checkpoint_interval);
   }
   if (run->parsed()) return commands.run(run_options);
   if (check->parsed()) return commands.check(check_options);
   if (weave->parsed()) return commands.weave(weave_options);
-  return commands.friction(friction_options);
+  if (friction->parsed()) return commands.friction(friction_options);
+  return commands.calibrate(calibrate_options);
 }
 
 }  // namespace heddle::pipeline

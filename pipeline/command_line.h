@@ -12,6 +12,7 @@ namespace heddle::pipeline {
 struct Commands {
   std::function<int(const RunOptions&)> run, weave, friction;
   std::function<int(const CheckOptions&)> check;
+  std::function<int(const CalibrateOptions&)> calibrate;
 };
 
 /// Reads the command line and calls the function it asks for.

@@ -31,6 +31,11 @@ struct CheckOptions {
   bool reference = false;  ///< print the page of all keys instead
 };
 
+struct CalibrateOptions {
+  RunOptions run;
+  std::filesystem::path data;  ///< measured coupons
+};
+
 /// How a run ended.
 struct RunEnding {
   int exit_code = exit_done;
@@ -44,9 +49,10 @@ RunEnding run_chain(const RunOptions& options);
 std::filesystem::path output_folder(const RunOptions& options, const std::string& name);
 
 /// Each returns an exit code, and throws InputError for bad input.
-int run_case(const RunOptions& options);       ///< the whole chain
-int weave_case(const RunOptions& options);     ///< unit cell only
-int friction_case(const RunOptions& options);  ///< friction test only
-int check_file(const CheckOptions& options);   ///< every problem, or the stages and notes
+int run_case(const RunOptions& options);              ///< the whole chain
+int weave_case(const RunOptions& options);            ///< unit cell only
+int friction_case(const RunOptions& options);         ///< friction test only
+int calibrate_case(const CalibrateOptions& options);  ///< numbers of the law from measured coupons
+int check_file(const CheckOptions& options);          ///< every problem, or the stages and notes
 
 }  // namespace heddle::pipeline

@@ -104,6 +104,8 @@ class ValueReader {
       read_list(setting, node_);
     } else if (key_.type == KeyType::rows) {
       read_rows(setting);
+    } else if (key_.type == KeyType::names) {
+      read_names(setting);
     } else if (node_.kind != ConfigNode::Kind::scalar) {
       refuse("*.value"_family, "must be a single value", example());
     } else {
@@ -134,7 +136,8 @@ class ValueReader {
       case KeyType::pair:
       case KeyType::list:
       case KeyType::rows:
-        return;  // read_pair, read_list, read_rows
+      case KeyType::names:
+        return;  // read_pair, read_list, read_rows, read_names
     }
   }
 
@@ -159,6 +162,19 @@ class ValueReader {
     if (!fits)
       return refuse("*.rows"_family, fmt::format("must be a list of lists of {} values", columns), example());
     for (const ConfigNode& row : node_.items) read_list(setting, row);
+  }
+
+  void read_names(Setting& setting) {
+    if (node_.kind != ConfigNode::Kind::list || node_.items.empty())
+      return refuse("*.list"_family, "must be a list of names", example());
+    for (const ConfigNode& item : node_.items) {
+      setting.names.push_back(item.text);
+      if (std::find(key_.choices.begin(), key_.choices.end(), item.text) != key_.choices.end()) continue;
+      const std::string near = nearest(item.text, key_.choices);
+      problems_.push_back({"*.name"_family.of(key_.path), key_.path, flow_text(item), "is no name for it",
+                           near.empty() ? key_.help : fmt::format("The nearest is {}.", near), item.file,
+                           item.line});
+    }
   }
 
   double read_number(const ConfigNode& node) {
@@ -228,6 +244,7 @@ class ValueReader {
       return fmt::format("For instance {0}: [1 {1}, 2 {1}]", last_name(key_.path), key_.unit);
     if (key_.type == KeyType::list)
       return fmt::format("For instance {0}: [0 {1}, 45 {1}]", last_name(key_.path), key_.unit);
+    if (key_.type == KeyType::names) return key_.help;
     if (!key_.choices.empty()) return "Known: " + join_words(key_.choices, ", ") + ".";
     return key_.help;
   }
@@ -356,6 +373,7 @@ class ConfigReader {
     }
     if (stages.count(Stage::stamping) > 0) stages.insert(Stage::grid_error);
     if (given("friction_test")) stages.insert(Stage::friction_test);
+    if (given("calibrate")) stages.insert(Stage::calibrate);
     if (given("friction") || stages.size() > 1) stages.insert(Stage::friction);
     const bool weave = given("weave") || given("cell") || given("fabric") || given("forming");
     const ConfigNode* pressure = config_.root.find_path("friction.contact_pressure");
@@ -414,6 +432,8 @@ class ConfigReader {
         return " by the orientation study";
       case Stage::grid_error:
         return " for the grid error";
+      case Stage::calibrate:
+        return " by `heddle calibrate`";
       case Stage::always:
         return "";
       case Stage::cell:
@@ -497,20 +517,23 @@ std::string list_text(std::vector<double>::const_iterator begin, std::vector<dou
   return "[" + text + "]";
 }
 
-/// Lines "block:" that lead from the last path written to `path`, and the indentation of its last name.
-std::string open_blocks(std::vector<std::string>& open, const std::string& path) {
-  std::vector<std::string> blocks;
-  std::istringstream stream(path);
-  for (std::string name; std::getline(stream, name, '.');) blocks.push_back(name);
-  blocks.pop_back();
-  std::size_t shared = 0;
-  while (shared < open.size() && shared < blocks.size() && open[shared] == blocks[shared]) ++shared;
-  std::string lines;
-  for (std::size_t depth = shared; depth < blocks.size(); ++depth) {
-    lines += std::string(2 * depth, ' ') + blocks[depth] + ":\n";
+/// All settings below a block ("" or "weave."), each block once: the schema lists some keys of a block after
+/// those of others.
+std::string block_text(const std::vector<const Setting*>& settings, const std::string& block) {
+  const auto depth = static_cast<std::size_t>(std::count(block.begin(), block.end(), '.'));
+  std::set<std::string> written;
+  std::string text;
+  for (const Setting* setting : settings) {
+    const std::string& path = setting->key->path;
+    if (!path.starts_with(block)) continue;
+    const std::size_t dot = path.find('.', block.size());
+    const std::string name = path.substr(block.size(), dot - block.size());
+    if (!written.insert(name).second) continue;
+    text += std::string(2 * depth, ' ') + name + ":";
+    text += dot == std::string::npos ? " " + resolved_value(*setting) + "\n"
+                                     : "\n" + block_text(settings, block + name + ".");
   }
-  open = blocks;
-  return lines + std::string(2 * blocks.size(), ' ');
+  return text;
 }
 
 }  // namespace
@@ -546,6 +569,10 @@ std::array<double, 2> Settings::pair(const std::string& path) const {
 
 const std::vector<double>& Settings::many(const std::string& path) const {
   return get(path).many;
+}
+
+const std::vector<std::string>& Settings::names(const std::string& path) const {
+  return get(path).names;
 }
 
 const std::string& Settings::text(const std::string& path) const {
@@ -642,6 +669,8 @@ std::string resolved_value(const Setting& setting) {
                          write_quantity(setting.values[1], key.unit));
     case KeyType::list:
       return list_text(setting.many.begin(), setting.many.end(), key.unit);
+    case KeyType::names:
+      return "[" + join_words(setting.names, ", ") + "]";
     case KeyType::rows: {
       std::string rows;
       for (auto row = setting.many.begin(); row != setting.many.end(); row += key.columns)
@@ -657,14 +686,10 @@ std::string resolved_file_name(const Setting& setting) {
 }
 
 std::string resolved_yaml(const Settings& settings) {
-  std::string text;
-  std::vector<std::string> open;
-  for (const Key& key : schema()) {
-    const Setting* setting = settings.find(key.path);
-    if (setting == nullptr) continue;
-    text += open_blocks(open, key.path) + last_name(key.path) + ": " + resolved_value(*setting) + "\n";
-  }
-  return text;
+  std::vector<const Setting*> given;
+  for (const Key& key : schema())
+    if (const Setting* setting = settings.find(key.path)) given.push_back(setting);
+  return block_text(given, "");
 }
 
 }  // namespace heddle::pipeline

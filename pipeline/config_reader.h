@@ -20,7 +20,8 @@ struct Setting {
   std::string text;                ///< of words, choices and files; of a quantity only when it is a choice
   std::array<double, 2> values{};  ///< of quantities and integers: the first; of pairs: both
   std::vector<double> many = {};   ///< of lists; of rows, one row after the other
-  std::string file = {};           ///< where it was written; "" = default
+  std::vector<std::string> names = {};
+  std::string file = {};  ///< where it was written; "" = default
   int line = 0;
   std::filesystem::path folder = {};  ///< of the configuration: file keys are relative to it
   bool is_default() const { return file.empty(); }
@@ -31,6 +32,7 @@ struct Setting {
 class Settings {
  public:
   void add(Setting setting);
+  void remove(const std::string& path) { settings_.erase(path); }
   bool has(const std::string& path) const { return settings_.count(path) > 0; }
   const Setting* find(const std::string& path) const;
 
@@ -39,6 +41,7 @@ class Settings {
   std::array<double, 2> pair(const std::string& path) const;
   const std::vector<double>& many(const std::string& path) const;
   const std::string& text(const std::string& path) const;
+  const std::vector<std::string>& names(const std::string& path) const;
   bool is(const std::string& path, const std::string& choice) const {
     return has(path) && text(path) == choice;
   }

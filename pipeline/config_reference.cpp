@@ -2,6 +2,8 @@
 
 #include <fmt/format.h>
 
+#include <set>
+
 #include "core/units.h"
 #include "pipeline/config_schema.h"
 
@@ -36,6 +38,8 @@ std::string value_column(const Key& key) {
       return "whole number";
     case KeyType::file:
       return "file";
+    case KeyType::names:
+      return "[key, ...]";
     case KeyType::pair:
       return fmt::format("[{0}, {0}]", key.unit);
     case KeyType::list:
@@ -74,6 +78,9 @@ std::string help_column(const Key& key) {
 }
 
 std::string row(const Key& key) {
+  if (!key.family.empty())
+    return fmt::format("| `{}` | pair in the unit of KEY | {} | | {} |\n", key.family, default_column(key),
+                       help_column(key));
   return fmt::format("| `{}` | {} | {} | {} | {} |\n", key.path, value_column(key), default_column(key),
                      key.range, help_column(key));
 }
@@ -84,6 +91,7 @@ std::string config_reference() {
   std::string text = introduction;
   std::string block;
   std::string later;
+  std::set<std::string> families;
   for (const Key& key : schema()) {
     if (key.presence == Presence::later) {
       later += (later.empty() ? "`" : ", `") + key.path + "`";
@@ -95,7 +103,7 @@ std::string config_reference() {
       text += fmt::format("\n## {}\n\n| key | value | default | range | |\n|---|---|---|---|---|\n", heading);
       block = heading;
     }
-    text += row(key);
+    if (key.family.empty() || families.insert(key.family).second) text += row(key);
   }
   return text + "\n## Known, not read by this version\n\n" + later + "\n";
 }

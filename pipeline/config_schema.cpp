@@ -7,6 +7,7 @@
 #include <stdexcept>
 
 #include "core/units.h"
+#include "pipeline/calibrate_keys.h"
 #include "pipeline/friction_keys.h"
 
 namespace heddle::pipeline {
@@ -174,6 +175,15 @@ std::vector<Key> friction_keys() {
       {.path = "friction.calibration.plate_area_band", .type = KeyType::pair, .unit = "m^2", .presence = optional,
        .range = "(0 m^2, 1 m^2)", .stage = friction, .used_when = stribeck,
        .help = "Smallest and largest plate area thought possible; reports carry it."},
+      {.path = "friction.box.hersey", .type = KeyType::pair, .presence = optional, .range = "[0, )", .stage = friction,
+       .used_when = "!friction.calibration.data",
+       .help = "Hersey numbers between which the law was fitted; beyond them its log slope is held."},
+      {.path = "friction.box.pressure", .type = KeyType::pair, .unit = "kPa", .presence = optional,
+       .range = "[0 kPa, )", .stage = friction, .used_when = "!friction.calibration.data",
+       .help = "Nominal pressures of the fit; reports say how much friction work lies outside."},
+      {.path = "friction.box.speed", .type = KeyType::pair, .unit = "mm/s", .presence = optional,
+       .range = "[0 mm/s, )", .stage = friction, .used_when = "!friction.calibration.data",
+       .help = "Slip speeds of the fit."},
       {.path = "friction.scale", .type = KeyType::quantity, .presence = required, .range = "(0, )", .stage = friction,
        .used_when = direct_power, .help = "C of the power form."},
       {.path = "friction.exponent", .type = KeyType::quantity, .presence = required, .range = "[0, 1)",
@@ -377,6 +387,7 @@ std::vector<Key> all_keys() {
   append(keys, effect_keys());
   append(keys, artefact_keys());
   append(keys, study_keys());
+  append(keys, calibrate_keys());
   return keys;
 }
 

@@ -15,6 +15,7 @@ enum class KeyType {
   pair,      ///< two quantities in a list
   list,      ///< any number of quantities in a list, at least one
   rows,      ///< list of lists of `columns` quantities each
+  names,     ///< list of some of `choices`, at least one
   file       ///< path of a file that exists, relative to the configuration file
 };
 
@@ -26,7 +27,7 @@ enum class Presence {
 };
 
 /// What a key is for: keys are asked for only if their stage runs.
-enum class Stage { always, cell, friction, friction_test, stamping, grid_error, orientation_study };
+enum class Stage { always, cell, friction, friction_test, stamping, grid_error, orientation_study, calibrate };
 
 /// One key of the configuration. The table of these is the one source of validation, defaults and the
 /// reference page.
@@ -43,7 +44,8 @@ struct Key {
   /// Conditions joined by blanks, all of which must hold for the key to be used: "friction.law=stribeck",
   /// "friction.calibration.data" (given), "!friction.calibration.data" (not given).
   std::string used_when = {};
-  std::string help = {};  ///< one line
+  std::string help = {};    ///< one line
+  std::string family = {};  ///< keys of one family share a row of the reference page, under this path
 };
 
 /// All keys, in the order in which files and pages list them.

@@ -14,7 +14,8 @@ int main(int argument_count, char** arguments) {
     return pipeline::dispatch(words, {.run = pipeline::run_case,
                                       .weave = pipeline::weave_case,
                                       .friction = pipeline::friction_case,
-                                      .check = pipeline::check_file});
+                                      .check = pipeline::check_file,
+                                      .calibrate = pipeline::calibrate_case});
   } catch (const InputError& error) {
     std::cerr << error.what();
     return pipeline::exit_bad_input;

@@ -13,8 +13,8 @@
 #include "pipeline/chart.h"
 #include "pipeline/export_vtu.h"
 #include "pipeline/interrupt.h"
+#include "pipeline/page.h"
 #include "pipeline/report_figures.h"
-#include "pipeline/report_style.h"
 #include "pipeline/run_folder.h"
 #include "pipeline/stage_keys.h"
 #include "pipeline/stages.h"
@@ -66,25 +66,6 @@ std::vector<OrientedBlank> stamped(const OrientationFindings& findings) {
 }
 
 // ---- the page
-
-std::string figure(const Canvas& picture, std::string_view caption) {
-  return fmt::format("<figure>\n{}<figcaption>{}</figcaption>\n</figure>\n", picture.inline_svg(),
-                     escape(caption));
-}
-
-std::string table(const std::vector<std::string>& head, const std::vector<std::vector<std::string>>& rows) {
-  std::string out = "<div class=\"scroll\"><table>\n<tr>";
-  for (std::size_t k = 0; k < head.size(); ++k)
-    out += fmt::format("<th{}>{}</th>", k > 0 ? " class=\"number\"" : "", escape(head[k]));
-  out += "</tr>\n";
-  for (const auto& row : rows) {
-    out += "<tr>";
-    for (std::size_t k = 0; k < row.size(); ++k)
-      out += fmt::format("<td{}>{}</td>", k > 0 ? " class=\"number\"" : "", escape(row[k]));
-    out += "</tr>\n";
-  }
-  return out + "</table></div>\n";
-}
 
 std::string signed_number(double value, int digits) {
   if (value == 0.0) return "0";
@@ -190,12 +171,6 @@ std::string sample_table(const std::vector<FrictionTestRow>& samples) {
                     significant(s.normal_force, 4), fmt::format("{:.4f}", s.friction_coefficient),
                     significant(s.pull_force, 5)});
   return table({"Warp to the pull", "Speed, mm/s", "Normal force, N", "μ of the law", "Pull 2 μ N, N"}, rows);
-}
-
-std::string list(const std::vector<std::string>& texts) {
-  std::string out = "<ul class=\"notes\">\n";
-  for (const std::string& text : texts) out += fmt::format("<li>{}</li>\n", escape(text));
-  return out + "</ul>\n";
 }
 
 // ---- the runs
@@ -345,14 +320,11 @@ std::string orientation_table_csv(const std::vector<OrientedBlank>& blanks) {
 }
 
 std::string orientation_html(const OrientationFindings& findings) {
-  std::string out = fmt::format(
-      "<!doctype html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\">\n"
-      "<meta name=\"viewport\" content=\"width=device-width, initial-scale=1\">\n<title>{0} · "
-      "heddle</title>\n"
-      "<style>{1}</style>\n</head>\n<body>\n<main>\n<header>\n<p class=\"kind\">heddle · Orientation "
-      "study</p>\n"
-      "<h1>{0}</h1>\n<p class=\"lead\">{2}</p>\n</header>\n",
-      escape(findings.name), report_style(), escape(findings.description));
+  std::string out = page_head(findings.name);
+  out += fmt::format(
+      "<header>\n<p class=\"kind\">heddle · Orientation study</p>\n<h1>{}</h1>\n<p "
+      "class=\"lead\">{}</p>\n</header>\n",
+      escape(findings.name), escape(findings.description));
   out += "<section>\n<h2>What orientation changes</h2>\n" + sensitivity_table(sensitivities(findings)) +
          "</section>\n";
   if (!findings.blanks.empty()) {
@@ -373,9 +345,9 @@ std::string orientation_html(const OrientationFindings& findings) {
   if (!findings.samples.empty())
     out += "<section>\n<h2>Friction samples</h2>\n" + sample_table(findings.samples) + "</section>\n";
   out += "<section>\n<h2>What it rests on</h2>\n" + list(findings.notes) + "</section>\n";
-  return out +
-         "<footer>Written by heddle. Numbers: table.csv, friction/friction_test.csv and cases/ in the same "
-         "folder.</footer>\n</main>\n</body>\n</html>\n";
+  return out + page_foot(
+                   "Written by heddle. Numbers: table.csv, friction/friction_test.csv and cases/ in the same "
+                   "folder.");
 }
 
 int run_orientation_study(const RunOptions& options, Case a_case) {

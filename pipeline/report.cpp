@@ -6,47 +6,14 @@
 #include <cmath>
 #include <numbers>
 
+#include "pipeline/page.h"
 #include "pipeline/report_figures.h"
-#include "pipeline/report_style.h"
 
 namespace heddle::pipeline {
 
 namespace {
 
 constexpr double degrees = 180.0 / std::numbers::pi;
-
-// ---- pieces of a page
-// --------------------------------------------------------------------------------------------
-
-std::string section(std::string_view title, const std::string& body) {
-  return body.empty() ? "" : fmt::format("<section>\n<h2>{}</h2>\n{}</section>\n", escape(title), body);
-}
-
-/// @param caption  says what to see in the picture
-std::string figure(const Canvas& picture, std::string_view caption) {
-  return fmt::format("<figure>\n{}<figcaption>{}</figcaption>\n</figure>\n", picture.inline_svg(),
-                     escape(caption));
-}
-
-std::string pair(const std::string& left, const std::string& right) {
-  return left.empty() && right.empty() ? "" : "<div class=\"pair\">\n" + left + right + "</div>\n";
-}
-
-std::string facts_table(const std::vector<Condition>& facts) {
-  if (facts.empty()) return "";
-  std::string out = "<table class=\"facts\">\n";
-  for (const Condition& fact : facts) {
-    out += fmt::format("<tr><td>{}</td><td>{}</td></tr>\n", escape(fact.name), escape(fact.value));
-  }
-  return out + "</table>\n";
-}
-
-std::string list(const std::vector<std::string>& texts) {
-  if (texts.empty()) return "";
-  std::string out = "<ul class=\"notes\">\n";
-  for (const std::string& text : texts) out += fmt::format("<li>{}</li>\n", escape(text));
-  return out + "</ul>\n";
-}
 
 // ---- the top of the page
 // -----------------------------------------------------------------------------------------
@@ -75,34 +42,6 @@ std::string results(const ReportInput& input) {
     out += result("Contact fraction", significant(100.0 * cell.contact_area_fraction, 3), "%");
   }
   return out.empty() ? "" : "<dl class=\"results\">\n" + out + "</dl>\n";
-}
-
-struct ToneWords {
-  std::string_view style, word;
-};
-
-ToneWords words(Tone tone) {
-  switch (tone) {
-    case Tone::holds:
-      return {"holds", "✓ holds"};
-    case Tone::note:
-      return {"note", "· note"};
-    case Tone::attention:
-      return {"attention", "! attention"};
-    case Tone::fails:
-      return {"fails", "✗ fails"};
-  }
-  return {"fails", "✗ fails"};
-}
-
-std::string verdict_list(const ReportInput& input) {
-  std::string out;
-  for (const Verdict& verdict : verdicts(input)) {
-    const ToneWords tone = words(verdict.tone);
-    out += fmt::format("<li class=\"{}\"><span class=\"tone\">{}</span><span>{}</span></li>\n", tone.style,
-                       tone.word, escape(verdict.text));
-  }
-  return out.empty() ? "" : "<ul class=\"verdicts\">\n" + out + "</ul>\n";
 }
 
 std::string header(const ReportInput& input) {
@@ -268,25 +207,17 @@ std::string grounds(const ReportInput& input) {
 }  // namespace
 
 std::string report_html(const ReportInput& input) {
-  std::string out = fmt::format(
-      "<!doctype html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\">\n"
-      "<meta name=\"viewport\" content=\"width=device-width, initial-scale=1\">\n<title>{} · "
-      "heddle</title>\n<style>",
-      escape(input.name));
-  out += report_style() + "</style>\n</head>\n<body>\n<main>\n";
-  out += header(input) + results(input) + verdict_list(input);
+  std::string out = page_head(input.name);
+  out += header(input) + results(input) + verdict_list(verdicts(input));
   out += section("The formed part", formed_part(input));
   out += section("Forces and motion", forces(input));
   out += section("Is the answer sound?", soundness(input));
   out += section("The weave", weave(input));
   out += section("Contact and friction", friction_section(input));
   out += section("What it rests on", grounds(input));
-  out +=
-      "<footer>Written by heddle. Numbers behind the charts: summary.json, macroscale/history.csv and "
-      "mesoscale/fabric.json in the "
-      "same folder. "
-      "Angles in degrees, forces in newtons.</footer>\n";
-  return out + "</main>\n</body>\n</html>\n";
+  return out + page_foot(
+                   "Written by heddle. Numbers behind the charts: summary.json, macroscale/history.csv and "
+                   "mesoscale/fabric.json in the same folder. Angles in degrees, forces in newtons.");
 }
 
 }  // namespace heddle::pipeline

@@ -75,8 +75,9 @@ RunFolder::RunFolder(const Case& a_case, fs::path folder, bool force, Entry entr
                        "cannot be created: " + error.code().message(), "Choose another folder with -o."}});
   }
   // The manifest says that a run is complete: it goes first and comes last.
-  for (const char* name : {"manifest.json", "mesoscale", "friction", "inputs", "cases", "table.csv",
-                           "summary.json", "report.html", "log.txt"})
+  for (const char* name :
+       {"manifest.json", "mesoscale", "friction", "inputs", "cases", "table.csv", "calibration",
+        "calibration.json", "patched.yaml", "summary.json", "report.html", "log.txt"})
     fs::remove_all(path_ / name);
   if (fs::exists(path_ / "macroscale"))
     for (const auto& file : fs::directory_iterator(path_ / "macroscale"))

@@ -144,6 +144,15 @@ friction::AreaFunction area_function(const FrictionSpec& spec, const mesoscale::
   };
 }
 
+friction::AreaFunction area_of_pulled_fabric(const Case& a_case) {
+  const FrictionSpec& spec = *a_case.friction;
+  if (spec.contact_pressure == macroscale::ContactPressure::nominal || !a_case.cell ||
+      !friction::reads_hersey_number(spec.model.law))
+    return {};
+  const mesoscale::FabricProperties pulled = pulled_fabric(a_case, nullptr);
+  return area_function(spec, &pulled);
+}
+
 FrictionStage run_friction_stage(const Case& a_case, const mesoscale::FabricProperties* fabric) {
   const FrictionSpec& spec = *a_case.friction;
   if (spec.contact_pressure == macroscale::ContactPressure::real && !fabric)

@@ -28,6 +28,9 @@ struct FrictionStage {
 /// Contact area fraction of the unsheared weave, as friction reads it; empty for nominal pressure.
 friction::AreaFunction area_function(const FrictionSpec& spec, const mesoscale::FabricProperties* fabric);
 
+/// The same of the fabric that the calibration pulls were made of, with a cell of its own analysed for it.
+friction::AreaFunction area_of_pulled_fabric(const Case& a_case);
+
 /// Calibrates where the case asks for it, then runs the friction test.
 /// @param fabric  needed where the contact pressure is real
 /// @throws InputError  naming the data file and line, or the missing weave

@@ -3,6 +3,7 @@
 #include <boost/math/distributions/normal.hpp>
 #include <boost/math/distributions/students_t.hpp>
 
+#include <Eigen/QR>
 #include <Eigen/SVD>
 #include <algorithm>
 #include <cmath>
@@ -62,6 +63,15 @@ Uncertainty invert(const Eigen::MatrixXd& rows) {
   return result;
 }
 
+/// Independent columns, whatever their length.
+Eigen::Index rank_of(const Eigen::MatrixXd& rows) {
+  const Eigen::VectorXd norms = (rows.colwise().norm().array() == 0.0).select(1.0, rows.colwise().norm());
+  Eigen::ColPivHouseholderQR<Eigen::MatrixXd> qr(rows.rows(), rows.cols());
+  qr.setThreshold(1e-6);
+  qr.compute(rows * norms.cwiseInverse().asDiagonal());
+  return qr.rank();
+}
+
 double median(std::vector<double> values) {
   const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
   std::nth_element(values.begin(), middle, values.end());
@@ -103,8 +113,18 @@ class Fit {
     return static_cast<int>(std::ranges::count_if(
         spec_.numbers, [](const FreeNumber& number) { return number.prior.has_value(); }));
   }
-  /// Samples and priors beyond one a number.
-  int left_over() const { return static_cast<int>(samples_.size()) + priors() - static_cast<int>(count()); }
+  /// Samples and priors beyond one for each number, or combination of numbers, that they fix.
+  int left_over() const {
+    Eigen::MatrixXd rows(slopes_.rows() + priors(), slopes_.cols());
+    rows.setZero();
+    rows.topRows(slopes_.rows()) = slopes_;
+    Eigen::Index at = slopes_.rows();
+    for (Eigen::Index k = 0; k < slopes_.cols(); ++k)
+      if (const auto& prior = spec_.numbers[static_cast<std::size_t>(k)].prior)
+        rows(at++, k) = 1.0 / prior->sd;
+    const auto rank = static_cast<int>(rank_of(rows));
+    return static_cast<int>(samples_.size()) + priors() - rank;
+  }
 
   void choose_variables() {
     const std::vector<ModelNumber> numbers = numbers_of(model_);

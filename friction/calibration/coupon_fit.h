@@ -89,7 +89,7 @@ struct CouponFit {
   std::vector<double> day_shifts;  ///< of ln F, one a day; empty without a day effect
   std::vector<CouponResidual> rows;
   std::vector<Confusion> confusions;
-  int degrees_of_freedom = 0;   ///< samples + priors - numbers
+  int degrees_of_freedom = 0;   ///< samples + priors - numbers, those not told apart counted once
   int from_priors = 0;          ///< how many of them are priors
   double rms_error = 0.0;       ///< of F_model / F_measured - 1
   double worst_difference = 0;  ///< largest NumberSlope::error met

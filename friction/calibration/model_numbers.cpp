@@ -8,6 +8,8 @@
 #include <optional>
 #include <stdexcept>
 #include <type_traits>
+#include <utility>
+#include <variant>
 
 #include "friction/parameters.h"
 
@@ -68,6 +70,15 @@ void visit_numbers(AnyModel& model, const Function& f) {
     using Effect = typename std::remove_cvref_t<decltype(effect)>::value_type;
     if (effect) visit_fields(*effect, fmt::format("effects.{}", About<Effect>::id), f);
   });
+}
+
+/// Calls f with a default of each alternative of a variant.
+template <class Variant, class Function>
+void for_each_alternative(const Function& f) {
+  [&]<std::size_t... I>(std::index_sequence<I...>) {
+    (f(std::variant_alternative_t<I, Variant>{}), ...);
+  }
+  (std::make_index_sequence<std::variant_size_v<Variant>>{});
 }
 
 /// d ln Hs / d number of Hs = m a(T) g_f^n phi/p_f, g_f^2 = (U/h)^2 + g0^2; empty for what Hs does not see.
@@ -151,6 +162,32 @@ std::vector<ModelNumber> numbers_of(const Model& model) {
     numbers.push_back({std::move(key), unit, range, value});
   });
   return numbers;
+}
+
+std::vector<ModelNumber> all_numbers() {
+  std::vector<ModelNumber> all;
+  const auto add = [&](const Model& model) {
+    for (ModelNumber& number : numbers_of(model))
+      if (std::ranges::find(all, number.key, &ModelNumber::key) == all.end())
+        all.push_back(std::move(number));
+  };
+  for_each_alternative<Law>(
+      [&](auto law) { add({.law = std::move(law), .film = {}, .effects = {}, .box = {}}); });
+  const Model film{.law = HerseyPower{}, .film = {}, .effects = {}, .box = {}};
+  for_each_alternative<Flow>([&](auto flow) {
+    Model model = film;
+    model.rheology.flow = flow;
+    add(model);
+  });
+  for_each_alternative<TemperatureLaw>([&](auto law) {
+    Model model = film;
+    model.rheology.temperature = law;
+    add(model);
+  });
+  Model effects = film;
+  for_each_effect(effects.effects, [](auto& effect) { effect.emplace(); });
+  add(effects);
+  return all;
 }
 
 void set_number(Model& model, const std::string& key, double value) {

@@ -20,6 +20,9 @@ struct ModelNumber {
 /// number, of the effects that are there. Choices (a form, a table) are no numbers.
 std::vector<ModelNumber> numbers_of(const Model& model);
 
+/// The same of every law, rheology and effect there is, whatever acts in one model: names for a choice.
+std::vector<ModelNumber> all_numbers();
+
 /// @param key  one of numbers_of(model)
 /// @throws std::out_of_range  if the model has no such number
 void set_number(Model& model, const std::string& key, double value);

@@ -97,9 +97,8 @@ TEST_CASE("each rule of the model is met by one bad value", "[friction][wrong in
        [](Model& m) {
          m.law = HerseyLinear{0.24, -0.2, 0.36};
        }},
-      {"friction.calibration.box_order", "friction.calibration",
-       [](Model& m) { m.box.pressure_low = 1e301; }},
-      {"friction.calibration.box_order", "friction.calibration", [](Model& m) { m.box.speed_low = -1.0; }},
+      {"friction.calibration.box_order", "friction.box", [](Model& m) { m.box.pressure_low = 1e301; }},
+      {"friction.calibration.box_order", "friction.box", [](Model& m) { m.box.speed_low = -1.0; }},
       {"effects.tool_temperature_shift.slope.range", "effects.tool_temperature_shift.slope",
        [](Model& m) { m.effects.tool_temperature_shift->slope = -0.927; }},
       {"effects.tool_temperature_shift.slope.range", "effects.tool_temperature_shift.slope",

@@ -183,7 +183,8 @@ TEST_CASE("what acts alike on every row is named with the product that is fixed"
   CHECK(product);
   CHECK_FALSE(fit.numbers[0].told_apart);
   CHECK_FALSE(fit.numbers[0].sd.has_value());
-  CHECK(fit.numbers[1].told_apart);  // the exponent is not part of it
+  CHECK(fit.degrees_of_freedom == 1);  // C and m are one number to these rows
+  CHECK(fit.numbers[1].told_apart);    // the exponent is not part of it
   CHECK(fit.numbers[1].sd.has_value());
   CHECK_FALSE(fit.numbers[3].told_apart);
   // Table 4 was pulled at one fabric temperature: it says nothing of E.

@@ -189,6 +189,10 @@ TEST_CASE("every key of the configuration is in the key of a stage, but for thos
     INFO(key.path);
     const bool read =
         std::any_of(stages.begin(), stages.end(), [&](ChainStage s) { return pipeline::reads(s, key); });
+    if (key.stage == pipeline::Stage::calibrate) {  // of a command that no cache stands before
+      CHECK_FALSE(read);
+      continue;
+    }
     CHECK(read != (std::find(idle.begin(), idle.end(), key.path) != idle.end()));
   }
   CHECK(idle ==
@@ -212,6 +216,7 @@ TEST_CASE("the key of a stage moves with what it reads and with nothing else", "
     return text;
   };
   CHECK(moved("name=other") == "....");
+  CHECK(moved("calibrate={loss: huber, prior: {resin: {power_index: [0.38, 0.02]}}}") == "....");
   CHECK(moved("weave.gap=0.75 mm") == "....");
   CHECK(moved("weave.gap=750 um") == "....");  // the same number
   CHECK(moved("weave.gap=0.7500000000000001 mm") == "XXXX");

@@ -14,6 +14,7 @@ struct Record {
   std::string called;
   RunOptions run;
   CheckOptions check;
+  CalibrateOptions calibrate;
 };
 
 int call(const std::vector<std::string>& arguments, Record& record) {
@@ -27,11 +28,18 @@ int call(const std::vector<std::string>& arguments, Record& record) {
   return dispatch(arguments, {.run = note("run"),
                               .weave = note("weave"),
                               .friction = note("friction"),
-                              .check = [&](const CheckOptions& options) {
-                                record.called = "check";
-                                record.check = options;
-                                return 8;
-                              }});
+                              .check =
+                                  [&](const CheckOptions& options) {
+                                    record.called = "check";
+                                    record.check = options;
+                                    return 8;
+                                  },
+                              .calibrate =
+                                  [&](const CalibrateOptions& options) {
+                                    record.called = "calibrate";
+                                    record.calibrate = options;
+                                    return 9;
+                                  }});
 }
 
 }  // namespace
@@ -71,6 +79,12 @@ TEST_CASE("each subcommand reaches its function", "[pipeline][command_line]") {
   CHECK(record.check.file == "a.yaml");
   CHECK(call({"check", "--reference"}, record) == 8);
   CHECK(record.check.reference);
+  const std::string data = HEDDLE_SOURCE_DIR "/configs/data/friction_table4.csv";
+  CHECK(call({"calibrate", "a.yaml", "--data", data, "-o", "out/x"}, record) == 9);
+  CHECK(record.called == "calibrate");
+  CHECK(record.calibrate.run.file == "a.yaml");
+  CHECK(record.calibrate.run.output == "out/x");
+  CHECK(record.calibrate.data == data);
 }
 
 TEST_CASE("a faulty interval in the environment is refused", "[pipeline][command_line]") {
@@ -95,6 +109,8 @@ TEST_CASE("a faulty command line is bad input and calls nothing", "[pipeline][co
   CHECK(call({"fly", "a.yaml"}, record) == exit_bad_input);
   CHECK(call({"run", "a.yaml", "--fast"}, record) == exit_bad_input);
   CHECK(call({"run", "a.yaml", "-j", "0"}, record) == exit_bad_input);
+  CHECK(call({"calibrate", "a.yaml"}, record) == exit_bad_input);  // fitted to what?
+  CHECK(call({"calibrate", "a.yaml", "--data", "no-such-file.csv"}, record) == exit_bad_input);
   CHECK(record.called.empty());
   CHECK(call({"--version"}, record) == exit_done);
   CHECK(call({"--help"}, record) == exit_done);

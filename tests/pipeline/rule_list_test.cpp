@@ -174,8 +174,6 @@ const std::vector<Elsewhere> elsewhere{
     {"file.unreadable", "core/text_file_test.cpp",
      "a file that cannot be read is refused under the rule it breaks",
      "the file under check itself, or one that vanished since"},
-    {"friction.calibration.box_order", "friction/check_test.cpp",
-     "each rule of the model is met by one bad value", "the box is measured from the table"},
     {"friction.hersey_table.empty", "friction/law_forms_test.cpp",
      "bad numbers of laws, rheologies and effects are named with rule and way out",
      "a table that was read has its curve"},
@@ -300,6 +298,9 @@ const std::vector<Elsewhere> elsewhere{
      "known once the data are read"},
     {"calibrate.data.alike", of_fit, "a wish that cannot be answered is refused with every reason",
      "known once the data are read"},
+    {"calibrate.friction", "pipeline/calibrate_test.cpp",
+     "a calibration without friction, or of numbers that do not act, is refused",
+     "of a command, not of a configuration"},
     {"environment.checkpoint_seconds", "pipeline/command_line_test.cpp",
      "a faulty interval in the environment is refused", "of a command, not of a configuration"},
 };
