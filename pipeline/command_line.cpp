@@ -53,6 +53,20 @@ CLI::App* add_check(CLI::App& program, CheckOptions& options) {
   return command;
 }
 
+void add_export(CLI::App& program, ExportOptions& options) {
+  CLI::App* command = program.add_subcommand("export", "The friction law as another program takes it");
+  command
+      ->add_option("file", options.run.file,
+                   "Configuration file (YAML), or the folder of a run or calibration")
+      ->required();
+  command->add_option("--to", options.target, "abaqus: user subroutine FRIC_COEF; csv: table of mu")
+      ->required()
+      ->check(CLI::IsMember({"abaqus", "csv"}));
+  command->add_option("-o,--output", options.run.output,
+                      "Folder of the file (default: DIR/export, out/export/NAME)");
+  add_assignments(*command, options.run.assignments);
+}
+
 /// HEDDLE_CACHE names the folder of the cache; `off` switches it off.
 std::filesystem::path cache_folder() {
   const char* asked = std::getenv("HEDDLE_CACHE");
@@ -85,6 +99,7 @@ int dispatch(const std::vector<std::string>& arguments, const Commands& commands
   RunOptions friction_options;
   CheckOptions check_options;
   CalibrateOptions calibrate_options;
+  ExportOptions export_options;
   const CLI::App* run =
       add_run(program, "run", "The whole chain: weave, friction, stamped part", run_options);
   program.get_subcommand("run")->add_flag("--resume", run_options.resume, "Go on from the last checkpoint");
@@ -95,6 +110,7 @@ int dispatch(const std::vector<std::string>& arguments, const Commands& commands
       ->add_option("--data", calibrate_options.data, "Table of coupons (CSV)")
       ->required()
       ->check(CLI::ExistingFile);
+  add_export(program, export_options);
 
   try {
     // CLI11 takes a vector from its end.
@@ -114,6 +130,7 @@ int dispatch(const std::vector<std::string>& arguments, const Commands& commands
   if (check->parsed()) return commands.check(check_options);
   if (weave->parsed()) return commands.weave(weave_options);
   if (friction->parsed()) return commands.friction(friction_options);
+  if (program.got_subcommand("export")) return commands.export_law(export_options);
   return commands.calibrate(calibrate_options);
 }
 

@@ -36,6 +36,11 @@ struct CalibrateOptions {
   std::filesystem::path data;  ///< measured coupons
 };
 
+struct ExportOptions {
+  RunOptions run;      ///< file: a configuration, or the folder of a run or a calibration
+  std::string target;  ///< "abaqus" or "csv"
+};
+
 /// How a run ended.
 struct RunEnding {
   int exit_code = exit_done;
@@ -53,6 +58,7 @@ int run_case(const RunOptions& options);              ///< the whole chain
 int weave_case(const RunOptions& options);            ///< unit cell only
 int friction_case(const RunOptions& options);         ///< friction test only
 int calibrate_case(const CalibrateOptions& options);  ///< numbers of the law from measured coupons
+int export_case(const ExportOptions& options);        ///< the friction law as other programs take it
 int check_file(const CheckOptions& options);          ///< every problem, or the stages and notes
 
 }  // namespace heddle::pipeline

@@ -15,7 +15,8 @@ int main(int argument_count, char** arguments) {
                                       .weave = pipeline::weave_case,
                                       .friction = pipeline::friction_case,
                                       .check = pipeline::check_file,
-                                      .calibrate = pipeline::calibrate_case});
+                                      .calibrate = pipeline::calibrate_case,
+                                      .export_law = pipeline::export_case});
   } catch (const InputError& error) {
     std::cerr << error.what();
     return pipeline::exit_bad_input;

@@ -163,3 +163,45 @@ TEST_CASE("a calibration without friction, or of numbers that do not act, is ref
         "calibrate.parameters.acts");
   CHECK_FALSE(fs::exists(scratch / "x"));  // refused before anything is written
 }
+
+TEST_CASE("a calibrated folder is exported with its fitted numbers", "[pipeline][export]") {
+  const Scratch scratch;
+  REQUIRE(pipeline::calibrate_case(options_for(scratch / "a")) == pipeline::exit_done);
+  const std::string scale =
+      pipeline::shortest(json_of(scratch / "a" / "calibration.json")["numbers"][0]["value"].get<double>());
+  pipeline::ExportOptions options;
+  options.run.file = scratch / "a";
+  options.run.print = false;
+  options.target = "abaqus";
+  REQUIRE(pipeline::export_case(options) == pipeline::exit_done);
+  const std::string routine = read_text_file(scratch / "a" / "export" / "heddle_friction.f");
+  CHECK(routine.find("c_scale =\n     & " + scale + "D0") != std::string::npos);
+  CHECK(routine.find("Fitted between 150 and 300 kPa") != std::string::npos);
+  CHECK(routine.find(scratch.operator/("").string()) == std::string::npos);  // no paths
+  options.target = "csv";
+  options.run.output = scratch / "table";
+  REQUIRE(pipeline::export_case(options) == pipeline::exit_done);
+  CHECK(fs::file_size(scratch / "table" / "friction_law.csv") > 100000);
+}
+
+TEST_CASE("an export without a case or a law is refused", "[pipeline][export][wrong input]") {
+  const Scratch scratch;
+  const auto rule = [](const fs::path& file, std::vector<std::string> settings = {}) -> std::string {
+    pipeline::ExportOptions options;
+    options.run.file = file;
+    options.run.assignments = std::move(settings);
+    options.run.print = false;
+    options.target = "csv";
+    try {
+      pipeline::export_case(options);
+    } catch (const InputError& error) {
+      return error.problems().front().id;
+    }
+    return "";
+  };
+  fs::create_directories(scratch / "empty");
+  CHECK(rule(scratch / "empty") == "export.folder");
+  CHECK(rule(source / "configs/unit_cell.yaml") == "export.friction");
+  CHECK(rule(source / "configs/calibrate.yaml", {"effects={static_peak: {amplitude: 0.3}}"}) ==
+        "export.memory");
+}

@@ -15,6 +15,7 @@ struct Record {
   RunOptions run;
   CheckOptions check;
   CalibrateOptions calibrate;
+  ExportOptions exported;
 };
 
 int call(const std::vector<std::string>& arguments, Record& record) {
@@ -39,6 +40,12 @@ int call(const std::vector<std::string>& arguments, Record& record) {
                                     record.called = "calibrate";
                                     record.calibrate = options;
                                     return 9;
+                                  },
+                              .export_law =
+                                  [&](const ExportOptions& options) {
+                                    record.called = "export";
+                                    record.exported = options;
+                                    return 10;
                                   }});
 }
 
@@ -85,6 +92,10 @@ TEST_CASE("each subcommand reaches its function", "[pipeline][command_line]") {
   CHECK(record.calibrate.run.file == "a.yaml");
   CHECK(record.calibrate.run.output == "out/x");
   CHECK(record.calibrate.data == data);
+  CHECK(call({"export", "out/x", "--to", "abaqus"}, record) == 10);
+  CHECK(record.called == "export");
+  CHECK(record.exported.run.file == "out/x");
+  CHECK(record.exported.target == "abaqus");
 }
 
 TEST_CASE("a faulty interval in the environment is refused", "[pipeline][command_line]") {
@@ -110,6 +121,7 @@ TEST_CASE("a faulty command line is bad input and calls nothing", "[pipeline][co
   CHECK(call({"run", "a.yaml", "--fast"}, record) == exit_bad_input);
   CHECK(call({"run", "a.yaml", "-j", "0"}, record) == exit_bad_input);
   CHECK(call({"calibrate", "a.yaml"}, record) == exit_bad_input);  // fitted to what?
+  CHECK(call({"export", "a.yaml", "--to", "nowhere"}, record) == exit_bad_input);
   CHECK(call({"calibrate", "a.yaml", "--data", "no-such-file.csv"}, record) == exit_bad_input);
   CHECK(record.called.empty());
   CHECK(call({"--version"}, record) == exit_done);
