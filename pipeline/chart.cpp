@@ -173,8 +173,8 @@ Canvas draw(const LineChart& chart) {
   for (std::size_t i = 0; i < chart.series.size(); ++i) {
     lines.push_back(pixels_of(chart.series[i], x, y));
     if (!chart.series[i].dots) canvas.polyline(lines.back(), series_style("line", i));
-    for (const Point& point : chart.series[i].dots ? lines.back() : std::vector<Point>{})
-      canvas.disc(point, 3.5, series_style("dot", i));
+    for (std::size_t k = 0; chart.series[i].dots && k < lines.back().size(); ++k)
+      canvas.disc(lines.back()[k], 3.5, series_style("dot", i));
   }
   if (named) label_lines(canvas, frame, chart.series, lines);
   return canvas;

@@ -42,6 +42,8 @@ Problems check_export(const Model& model) {
   refuse(effects.dwell_ageing);
   refuse(effects.solidification);
   refuse(effects.wear);
+  if (problems.empty() && has_memory(model))
+    problems.push_back(memory_problem("friction", id_of(model.law), "Switch off what remembers."));
   if (is_on(effects.orientation))
     problems.push_back(
         {.id = "export.direction"_rule,
