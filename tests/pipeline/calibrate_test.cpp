@@ -70,7 +70,10 @@ TEST_CASE("calibrating the shipped case leaves a case that pulls the measured fo
   CHECK(json["numbers"][0]["fixed_by_assumed_plate_area"].get<bool>());
   CHECK_FALSE(json["numbers"][1]["fixed_by_assumed_plate_area"].get<bool>());
   CHECK(json["covariance"].size() == 3);
-  CHECK(read_text_file(scratch / "a" / "report.html").find("degree of freedom left") != std::string::npos);
+  const std::string report = read_text_file(scratch / "a" / "report.html");
+  CHECK(report.find("degree of freedom left") != std::string::npos);
+  CHECK(report.find("No condition was pulled twice on one day") != std::string::npos);  // one replicate
+  CHECK(report.find("the table has no day_id") != std::string::npos);
 
   const pipeline::Case patched = pipeline::read_case(scratch / "a" / "patched.yaml");
   const auto& law = std::get<friction::HerseyPower>(patched.friction->model.law);
