@@ -91,10 +91,14 @@ Case read_friction_part(const RunOptions& options) {
 
 /// Problems of the wish lie in the configuration, those of the table in the table.
 void demand_sound(const friction::Model& start, const CalibrationFindings& findings,
-                  const std::filesystem::path& file) {
+                  const Settings& settings) {
   Problems problems = friction::check_fit(start, findings.data, findings.spec);
-  for (Problem& problem : problems)
-    if (problem.file.empty()) problem.file = file.string();
+  for (Problem& problem : problems) {
+    const Setting* place = settings.find(problem.key);
+    if (!problem.file.empty() || place == nullptr) continue;
+    problem.file = place->file;
+    problem.line = place->line;
+  }
   if (!problems.empty()) throw InputError(std::move(problems));
 }
 
@@ -114,8 +118,7 @@ CalibrationFindings calibrate(const Case& a_case, const std::filesystem::path& d
   findings.rig = spec.rig;
   findings.plate_area_given = spec.has_plate_area || !sees_pressure(start);
   if (!spec.has_plate_area) findings.rig.plate_area_band = friction::FrictionRig{}.plate_area_band;
-  const Setting* asked = a_case.settings.find("calibrate.parameters");
-  demand_sound(start, findings, asked != nullptr ? asked->file : "");
+  demand_sound(start, findings, a_case.settings);
   findings.fit = friction::fit_coupons(start, findings.data, findings.rig, area, findings.spec);
   const auto [low, high] = findings.rig.plate_area_band;
   if (low < high && sees_pressure(start))
