@@ -3,13 +3,12 @@
 #include <boost/math/distributions/normal.hpp>
 #include <boost/math/distributions/students_t.hpp>
 
-#include <Eigen/QR>
-#include <Eigen/SVD>
 #include <algorithm>
 #include <cmath>
 
 #include "friction/calibrate.h"
 #include "friction/calibration/confusions.h"
+#include "friction/calibration/information.h"
 #include "friction/calibration/model_numbers.h"
 
 namespace heddle::friction {
@@ -20,57 +19,6 @@ namespace {
 struct SampleRows {
   std::size_t first, count, day;
 };
-
-/// The square root of the inverse covariance sd^2 11^T + reading^2 I of the rows of a sample, applied to a
-/// matrix with those rows. A sample of one row has its whole scatter in sd.
-void whiten(Eigen::Ref<Eigen::MatrixXd> rows, double sd, double reading) {
-  const auto count = static_cast<double>(rows.rows());
-  if (rows.rows() == 1) {
-    rows /= sd;
-    return;
-  }
-  const Eigen::RowVectorXd mean = rows.colwise().mean();
-  rows.rowwise() -= mean;
-  rows /= reading;
-  rows.rowwise() += mean / std::sqrt(reading * reading + count * sd * sd);
-}
-
-/// Covariance of the numbers and days, and which of them nothing fixes.
-struct Uncertainty {
-  Eigen::MatrixXd covariance;
-  std::vector<bool> fixed;
-};
-
-Uncertainty invert(const Eigen::MatrixXd& rows) {
-  const Eigen::VectorXd norms = (rows.colwise().norm().array() == 0.0).select(1.0, rows.colwise().norm());
-  const Eigen::JacobiSVD<Eigen::MatrixXd> svd(rows * norms.cwiseInverse().asDiagonal(), Eigen::ComputeThinV);
-  const Eigen::VectorXd& values = svd.singularValues();
-  Uncertainty result{.covariance = Eigen::MatrixXd::Zero(rows.cols(), rows.cols()),
-                     .fixed = std::vector<bool>(static_cast<std::size_t>(rows.cols()), true)};
-  const Eigen::MatrixXd v = norms.cwiseInverse().asDiagonal() * svd.matrixV();
-  for (Eigen::Index k = 0; k < values.size(); ++k) {
-    if (values[k] > 1e-7 * values[0]) {
-      result.covariance += v.col(k) * v.col(k).transpose() / (values[k] * values[k]);
-      continue;
-    }
-    for (Eigen::Index j = 0; j < rows.cols(); ++j)
-      if (std::abs(svd.matrixV()(j, k)) > 1e-4) result.fixed[static_cast<std::size_t>(j)] = false;
-  }
-  // Fewer rows than columns: the directions beyond the thin V are free as well.
-  if (rows.rows() < rows.cols())
-    for (Eigen::Index j = 0; j < rows.cols(); ++j)
-      if (svd.matrixV().row(j).squaredNorm() < 1.0 - 1e-8) result.fixed[static_cast<std::size_t>(j)] = false;
-  return result;
-}
-
-/// Independent columns, whatever their length.
-Eigen::Index rank_of(const Eigen::MatrixXd& rows) {
-  const Eigen::VectorXd norms = (rows.colwise().norm().array() == 0.0).select(1.0, rows.colwise().norm());
-  Eigen::ColPivHouseholderQR<Eigen::MatrixXd> qr(rows.rows(), rows.cols());
-  qr.setThreshold(1e-6);
-  qr.compute(rows * norms.cwiseInverse().asDiagonal());
-  return qr.rank();
-}
 
 double median(std::vector<double> values) {
   const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
@@ -308,7 +256,7 @@ class Fit {
     double freedom = 0.0;
     for (int round = 0; round < 50; ++round) {
       const Eigen::MatrixXd rows = information_rows(noise_.sample.sd, noise_.day.sd);
-      const Eigen::MatrixXd covariance = invert(rows).covariance;
+      const Eigen::MatrixXd covariance = uncertainty_of(rows).covariance;
       const Eigen::MatrixXd of_samples = rows.topRows(slopes_.rows());
       const double used = (of_samples * covariance * of_samples.transpose()).trace();
       freedom = static_cast<double>(samples_.size()) - used;
@@ -404,7 +352,7 @@ class Fit {
     if (noise_.sample.source == Scatter::Source::unknown) return;
     const double sample = noise_.sample.sd, day = noise_.day.sd;
     const auto numbers = slopes_.cols();
-    const Uncertainty at = invert(information_rows(sample, day));
+    const Uncertainty at = uncertainty_of(information_rows(sample, day));
     result.covariance = at.covariance.topLeftCorner(numbers, numbers);
     result.correlation = Eigen::MatrixXd::Zero(numbers, numbers);
     // How much of each variance is whose: the part that grows with the square of one scatter.
@@ -412,9 +360,9 @@ class Fit {
     const double square = (1.0 + h) * (1.0 + h) - 1.0;
     const Eigen::VectorXd variance = at.covariance.diagonal();
     const Eigen::VectorXd of_sample =
-        (invert(information_rows((1.0 + h) * sample, day)).covariance.diagonal() - variance) / square;
+        (uncertainty_of(information_rows((1.0 + h) * sample, day)).covariance.diagonal() - variance) / square;
     const Eigen::VectorXd of_day =
-        (invert(information_rows(sample, (1.0 + h) * day)).covariance.diagonal() - variance) / square;
+        (uncertainty_of(information_rows(sample, (1.0 + h) * day)).covariance.diagonal() - variance) / square;
     for (Eigen::Index k = 0; k < numbers; ++k) {
       FittedNumber& number = result.numbers[static_cast<std::size_t>(k)];
       if (number.at_bound || !at.fixed[static_cast<std::size_t>(k)]) continue;
