@@ -20,14 +20,23 @@ std::string percent(double share) {
   return fmt::format("{:.3g} %", 100.0 * share);
 }
 
+const char* plural(int count) {
+  return count == 1 ? "" : "s";
+}
+
+/// The interval of a number is that of its prior.
+bool prior_decides(const FittedNumber& number) {
+  return number.prior && number.sd && *number.sd > 0.9 * number.prior->sd;
+}
+
 // ---- what the numbers say
 
 Verdict freedom_verdict(const CalibrationFindings& findings) {
   const friction::CouponFit& fit = findings.fit;
-  const std::string counts =
-      fmt::format("{} numbers fitted to {} samples under {} conditions{}", fit.numbers.size(),
-                  findings.data.samples.size(), findings.data.conditions,
-                  fit.from_priors > 0 ? fmt::format(" and {} priors", fit.from_priors) : "");
+  const std::string counts = fmt::format(
+      "{} numbers fitted to {} samples under {} conditions{}", fit.numbers.size(),
+      findings.data.samples.size(), findings.data.conditions,
+      fit.from_priors > 0 ? fmt::format(" and {} prior{}", fit.from_priors, plural(fit.from_priors)) : "");
   if (fit.saturated())
     return {Tone::attention,
             counts +
@@ -35,7 +44,7 @@ Verdict freedom_verdict(const CalibrationFindings& findings) {
                 "the law; no scatter can be stated from this fit, and no form be tested."};
   return {Tone::note,
           fmt::format("{}: {} degree{} of freedom left; RMS error {:.2f} %.", counts, fit.degrees_of_freedom,
-                      fit.degrees_of_freedom == 1 ? "" : "s", 100.0 * fit.rms_error)};
+                      plural(fit.degrees_of_freedom), 100.0 * fit.rms_error)};
 }
 
 Verdict sample_verdict(const CalibrationFindings& findings) {
@@ -49,8 +58,7 @@ Verdict sample_verdict(const CalibrationFindings& findings) {
               fmt::format("No condition was pulled twice on one day: the scatter of samples, {}, is what the "
                           "fit leaves over ({} degree{} of freedom). It cannot be told from a law of the "
                           "wrong form; replicates would.",
-                          percent(sample.sd), sample.degrees_of_freedom,
-                          sample.degrees_of_freedom == 1 ? "" : "s")};
+                          percent(sample.sd), sample.degrees_of_freedom, plural(sample.degrees_of_freedom))};
     case Scatter::Source::given:
       return {Tone::note, fmt::format("The scatter of samples was given: {}.", percent(sample.sd))};
     default:
@@ -110,7 +118,7 @@ void add_number_verdicts(const CalibrationFindings& findings, std::vector<Verdic
     if (number.at_bound)
       verdicts.push_back({Tone::attention, fmt::format("{} ended at its bound, {}.", number.key,
                                                        quantity_text(number.value, number.unit, 4))});
-    if (number.prior && number.sd && *number.sd > 0.9 * number.prior->sd)
+    if (prior_decides(number))
       verdicts.push_back(
           {Tone::note, fmt::format("{} is what its prior says: the data narrow it by {:.0f} %.", number.key,
                                    100.0 * std::max(0.0, 1.0 - *number.sd / number.prior->sd))});
@@ -167,10 +175,11 @@ std::string number_table(const CalibrationFindings& findings) {
     std::vector<std::string> row{number.key, quantity_text(number.value, number.unit, 5),
                                  number.sd ? quantity_text(*number.sd, unit, 2) : "–", interval_text(number)};
     const bool by_area = findings.plate_area && findings.plate_area->moves[k];
-    row.push_back(number.at_bound      ? "its bound"
-                  : !number.told_apart ? (number.sd ? "prior" : "nothing alone")
-                  : by_area            ? "data and plate area"
-                                       : "data");
+    row.push_back(number.at_bound         ? "its bound"
+                  : !number.told_apart    ? (number.sd ? "prior" : "nothing alone")
+                  : prior_decides(number) ? "its prior"
+                  : by_area               ? "data and plate area"
+                                          : "data");
     rows.push_back(std::move(row));
   }
   return table(head, rows);
@@ -194,8 +203,8 @@ std::string plate_area_table(const CalibrationFindings& findings) {
 
 std::string correlation_table(const friction::CouponFit& fit) {
   if (fit.correlation.rows() < 2) return "";
-  std::vector<std::string> head{""};
-  head.insert(head.end(), fit.keys.begin(), fit.keys.end());
+  std::vector<std::string> head{""};  // last names: whole keys would not stand side by side
+  for (const std::string& key : fit.keys) head.push_back(key.substr(key.rfind('.') + 1));
   std::vector<std::vector<std::string>> rows;
   for (Eigen::Index i = 0; i < fit.correlation.rows(); ++i) {
     std::vector<std::string> row{fit.keys[static_cast<std::size_t>(i)]};

@@ -214,7 +214,8 @@ std::vector<Pull> stretches_of(const Pull& pull, int count) {
   for (const Line* line : pull) {
     const double slip = *line->displacement;
     if (count == 1 ? slip < 0.5 * longest : slip <= 0.0) continue;
-    const double share = count == 1 ? 0.0 : std::log(slip / shortest) / std::log(longest / shortest);
+    const bool one = count == 1 || !(longest > shortest);
+    const double share = one ? 0.0 : std::log(slip / shortest) / std::log(longest / shortest);
     const auto at = static_cast<std::size_t>(std::clamp(share * count, 0.0, count - 1.0));
     stretches[at].push_back(line);
   }
@@ -268,6 +269,41 @@ void check_force(CouponReader& reader, const CouponRow& row, int faces) {
                "Write pull force and normal force both in N.", row.line);
 }
 
+/// A piece of fabric with several lines needs the slip of each, some of it.
+bool check_history(CouponReader& reader, const Pull& pull) {
+  if (pull.size() == 1) return true;
+  const bool whole = std::ranges::all_of(pull, [](const Line* l) { return l->displacement.has_value(); });
+  if (whole && std::ranges::any_of(pull, [](const Line* l) { return *l->displacement > 0.0; })) return true;
+  const Line& first = *pull.front();
+  reader.add(
+      "friction.coupons.history"_rule, "displacement_mm", "",
+      fmt::format("must be given, and rise above 0, where a sample has several lines ({} of sample {})",
+                  pull.size(), first.sample),
+      "Give the displacement of each line, or each piece of fabric its own sample_id.", first.line);
+  return false;
+}
+
+/// Conditions named by the experimenter are alike though their measured numbers scatter.
+using Condition = std::tuple<std::string, double, double, double, double, double, double>;
+Condition condition_of(const Line& line) {
+  if (!line.condition.empty()) return {line.condition, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0};
+  return {"",
+          line.velocity,
+          line.normal_force,
+          line.tool_temperature,
+          line.fabric_temperature,
+          line.orientation,
+          line.dwell};
+}
+
+std::string reduction_in_words(std::size_t histories, int stretches) {
+  if (stretches == 1)
+    return fmt::format("{} histories were cut to the mean force over the second half of their displacement.",
+                       histories);
+  return fmt::format("{} histories were cut to the mean forces of up to {} stretches of displacement.",
+                     histories, stretches);
+}
+
 /// What is no fault for certain, but would be if all rows had it.
 std::vector<std::string> odd_looks(const std::vector<CouponRow>& rows) {
   double load = 0.0, speed = 0.0;
@@ -306,54 +342,28 @@ CouponData parse_coupons(std::string_view text, const std::string& file, const C
 
   CouponData data;
   data.file = file;
-  using Condition = std::tuple<std::string, double, double, double, double, double, double>;
   Numbering<Condition> conditions_seen;
   Numbering<std::string> days;
   std::size_t histories = 0;
   for (const Pull& pull : pulls_of(lines)) {
-    const Line& first = *pull.front();
-    const bool whole = std::ranges::all_of(pull, [](const Line* l) { return l->displacement.has_value(); });
-    if (pull.size() > 1 && !whole) {
-      reader.add("friction.coupons.history"_rule, "displacement_mm", "",
-                 fmt::format("must be given where a sample has several lines ({} of sample {})", pull.size(),
-                             first.sample),
-                 "Give the displacement of each line, or each piece of fabric its own sample_id.",
-                 first.line);
-      continue;
-    }
+    if (!check_history(reader, pull)) continue;
     if (pull.size() > 1) ++histories;
-    // Conditions named by the experimenter are alike though their measured numbers scatter.
-    const Condition condition = first.condition.empty()
-                                    ? Condition{"",
-                                                first.velocity,
-                                                first.normal_force,
-                                                first.tool_temperature,
-                                                first.fabric_temperature,
-                                                first.orientation,
-                                                first.dwell}
-                                    : Condition{first.condition, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0};
+    const Line& first = *pull.front();
+    if (days.of(first.day) == data.days.size()) data.days.push_back(first.day);
     for (const Pull& stretch : stretches_of(pull, reduction.stretches)) {
       CouponRow row = row_of(stretch);
-      row.condition = conditions_seen.of(condition);
+      row.condition = conditions_seen.of(condition_of(first));
       row.day = days.of(first.day);
       row.sample = data.samples.size();
       check_force(reader, row, reduction.faces);
       data.rows.push_back(std::move(row));
     }
-    if (days.count() > data.days.size()) data.days.push_back(first.day);
     data.samples.push_back(first.sample.empty() ? data.rows.back().pull.name : first.sample);
   }
   if (!problems.empty()) throw InputError(std::move(problems));
   data.conditions = conditions_seen.count();
   data.notes = odd_looks(data.rows);
-  if (histories > 0)
-    data.notes.push_back(reduction.stretches == 1
-                             ? fmt::format("{} histories were cut to the mean force over the second half of "
-                                           "their displacement.",
-                                           histories)
-                             : fmt::format("{} histories were cut to the mean forces of up to {} stretches "
-                                           "of displacement.",
-                                           histories, reduction.stretches));
+  if (histories > 0) data.notes.push_back(reduction_in_words(histories, reduction.stretches));
   return data;
 }
 

@@ -114,6 +114,9 @@ TEST_CASE("a table of coupons is refused with every problem and its line",
   CHECK(problems_of(header +
                     "base,1,mon,16,1500,85,180,0,0,1,,850,\nbase,1,mon,16,1500,85,180,0,0,2,,860,\n") ==
         Ids{"friction.coupons.history"});
+  CHECK(problems_of(header +
+                    "base,1,mon,16,1500,85,180,0,0,1,0,850,\nbase,1,mon,16,1500,85,180,0,0,2,0,860,\n") ==
+        Ids{"friction.coupons.history"});  // nothing slides
 }
 
 TEST_CASE("a table wholly in kN or m/s looks odd and says so", "[friction][calibration][wrong input]") {
