@@ -217,6 +217,18 @@ std::string correlation_table(const friction::CouponFit& fit) {
   return "<h3>Correlation</h3>\n" + table(head, rows);
 }
 
+/// Room left and right of the first and the last dot. A logarithmic axis over less than a factor of five
+/// would have one tick or none.
+void widen(Axis& axis, double low, double high) {
+  if (high < 5.0 * low) axis.scale = Scale::linear;
+  const bool log = axis.scale == Scale::logarithmic;
+  const double reach = log          ? 0.06 * std::log(high / low)
+                       : high > low ? 0.06 * (high - low)
+                                    : std::max(0.1 * std::abs(low), 1.0);
+  axis.low = log ? low * std::exp(-reach) : low - reach;
+  axis.high = log ? high * std::exp(reach) : high + reach;
+}
+
 /// Residuals in per cent of the force against one of the conditions, a colour a day.
 Canvas residual_chart(const CalibrationFindings& findings, Axis axis, const auto& abscissa) {
   LineChart chart;
@@ -241,13 +253,7 @@ Canvas residual_chart(const CalibrationFindings& findings, Axis axis, const auto
     high = std::max(high, x);
     largest = std::max(largest, std::abs(y));
   }
-  // Room left and right of the first and the last dot.
-  const bool log = chart.x.scale == Scale::logarithmic;
-  const double margin = high > low ? 0.06 : 0.5;
-  const double reach =
-      log ? margin * std::log(std::max(high / low, 2.0)) : margin * std::max(high - low, 1.0);
-  chart.x.low = log ? low * std::exp(-reach) : low - reach;
-  chart.x.high = log ? high * std::exp(reach) : high + reach;
+  widen(chart.x, low, high);
   const double top = std::max(1.1 * largest, 1e-3);
   chart.y.low = -top;
   chart.y.high = top;
@@ -277,8 +283,7 @@ std::string hersey_figure(const CalibrationFindings& findings) {
     model.x.push_back(hersey);
     model.y.push_back(findings.fit.rows[i].mu);
   }
-  chart.x.low = low / 1.15;
-  chart.x.high = high * 1.15;
+  widen(chart.x, low, high);
   chart.series = {std::move(measured), std::move(model)};
   return figure(draw(chart),
                 "Friction coefficient of each pull against its Hersey number, measured and by the fitted "
