@@ -29,6 +29,8 @@ double median(std::vector<double> values) {
 
 class Fit {
  public:
+  Fit(const Fit&) = delete;  // numbers_ point into its own model
+  Fit& operator=(const Fit&) = delete;
   Fit(const Model& start, const CouponData& data, const FrictionRig& rig, const AreaFunction& area,
       const CouponFitSpec& spec)
       : model_(start), data_(data), spec_(spec) {
@@ -41,7 +43,10 @@ class Fit {
         samples_.push_back({readings_.size() - 1, 0, row.day});
       ++samples_.back().count;
     }
-    for (const FreeNumber& number : spec.numbers) keys_.push_back(number.key);
+    for (const FreeNumber& number : spec.numbers) {
+      keys_.push_back(number.key);
+      numbers_.push_back(&number_in(model_, number.key));
+    }
     choose_variables();
   }
 
@@ -119,7 +124,7 @@ class Fit {
   }
 
   void set(const Eigen::VectorXd& x) {
-    for (std::size_t k = 0; k < count(); ++k) set_number(model_, keys_[k], x[static_cast<Eigen::Index>(k)]);
+    for (std::size_t k = 0; k < count(); ++k) *numbers_[k] = x[static_cast<Eigen::Index>(k)];
   }
 
   /// ln F_model - ln F of one row, and its slopes in the numbers.
@@ -404,6 +409,7 @@ class Fit {
   std::vector<PullReading> readings_;
   std::vector<SampleRows> samples_;
   std::vector<std::string> keys_;
+  std::vector<double*> numbers_;  ///< in model_, one a key
   std::vector<FitVariable> variables_;
   NoiseModel noise_;
   RobustFit fit_;

@@ -136,9 +136,10 @@ double one_sided(const auto& f, double h) {
 }
 
 NumberSlope difference(const Model& model, const PullReading& reading, const ModelNumber& number) {
+  Model other = model;
+  double& moved = number_in(other, number.key);
   const auto mu_at = [&](double change) {
-    Model other = model;
-    set_number(other, number.key, number.value + change);
+    moved = number.value + change;
     return coefficient_of(other, reading);
   };
   const auto inside = [&](double change) { return number.range.contains(number.value + change); };
@@ -190,14 +191,13 @@ std::vector<ModelNumber> all_numbers() {
   return all;
 }
 
-void set_number(Model& model, const std::string& key, double value) {
-  bool found = false;
+double& number_in(Model& model, const std::string& key) {
+  double* found = nullptr;
   visit_numbers(model, [&](const std::string& name, const char*, const Bounds&, double& number) {
-    if (name != key) return;
-    number = value;
-    found = true;
+    if (name == key) found = &number;
   });
-  if (!found) throw std::out_of_range("friction::set_number: the model has no " + key);
+  if (found == nullptr) throw std::out_of_range("friction::number_in: the model has no " + key);
+  return *found;
 }
 
 double coefficient_of(const Model& model, const PullReading& reading) {
@@ -210,13 +210,14 @@ double coefficient_of(const Model& model, const PullReading& reading) {
 std::vector<NumberSlope> number_slopes(const Model& model, const PullReading& reading,
                                        const std::vector<std::string>& keys) {
   const std::map<std::string, double> exact = exact_slopes(model, reading, keys);
-  const std::vector<ModelNumber> numbers = numbers_of(model);
+  std::vector<ModelNumber> numbers;  // asked for only where a key needs differences
   std::vector<NumberSlope> slopes;
   for (const std::string& key : keys) {
     if (const auto known = exact.find(key); known != exact.end()) {
       slopes.push_back({.value = known->second, .exact = true});
       continue;
     }
+    if (numbers.empty()) numbers = numbers_of(model);
     const auto number = std::ranges::find(numbers, key, &ModelNumber::key);
     if (number == numbers.end()) throw std::out_of_range("friction::number_slopes: no number " + key);
     slopes.push_back(difference(model, reading, *number));

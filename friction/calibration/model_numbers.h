@@ -23,9 +23,10 @@ std::vector<ModelNumber> numbers_of(const Model& model);
 /// The same of every law, rheology and effect there is, whatever acts in one model: names for a choice.
 std::vector<ModelNumber> all_numbers();
 
+/// The number itself. The reference holds while the model is not given another law, rheology or effect.
 /// @param key  one of numbers_of(model)
 /// @throws std::out_of_range  if the model has no such number
-void set_number(Model& model, const std::string& key, double value);
+double& number_in(Model& model, const std::string& key);
 
 /// What one reading of a friction test saw.
 struct PullReading {

@@ -68,7 +68,7 @@ Found fit_from_nearby(const Model& truth, const std::vector<std::string>& keys) 
     if (std::ranges::count(keys, number.key) == 0) continue;
     wanted[number.key] = number.value;
     const double off = number.range.contains(1.05 * number.value) ? 1.05 : 0.95;
-    set_number(start, number.key, off * number.value);
+    number_in(start, number.key) = off * number.value;
     spec.numbers.push_back({.key = number.key});
   }
   Found found{.fit = fit_coupons(start, data, {}, {}, spec)};

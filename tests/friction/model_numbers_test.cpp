@@ -28,7 +28,7 @@ PullReading reading_of(double slip = 5e-3) {
 double gap(const Model& model, const PullReading& reading, const ModelNumber& number, double slope) {
   const auto mu = [&](double x) {
     Model other = model;
-    set_number(other, number.key, x);
+    number_in(other, number.key) = x;
     return coefficient_of(other, reading);
   };
   const double scale = number.value != 0.0 ? std::abs(number.value) : 1.0;
@@ -115,6 +115,6 @@ TEST_CASE("the paper's law has exact slopes in all that acts", "[friction][calib
     CAPTURE(keys[k]);
     CHECK(slopes[k].exact == (keys[k] != "effects.tool_temperature_shift.reference"));
   }
-  CHECK_THROWS_AS(set_number(model, "friction.offset", 0.1), std::out_of_range);
+  CHECK_THROWS_AS(number_in(model, "friction.offset"), std::out_of_range);
   CHECK(numbers_of({.law = Coulomb{}, .film = {}, .effects = {}, .box = {}}).size() == 1);  // sees no film
 }
