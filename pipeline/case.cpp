@@ -208,7 +208,9 @@ std::optional<macroscale::ToolFileSpec> tool_file_of(const Settings& settings, c
   if (settings.has(block + ".length_unit"))
     spec.source.length_unit = read_quantity("1 " + settings.text(block + ".length_unit"), "mm").value;
   take(settings, block + ".mesh_size", spec.source.mesh_size);
+  take(settings, block + ".chord_error", spec.source.chord_error);
   take(settings, block + ".voxel", spec.voxel);
+  if (settings.is(block + ".sheet", "on")) spec.source.topology = macroscale::TopologyRule::open_allowed;
   spec.source.repair = settings.is(block + ".repair", "on");
   return spec;
 }

@@ -197,6 +197,7 @@ const std::vector<BadFile> bad_files{
     {"tool_file_of_another_kind", {{"tools.punch.file.type", 6}}},
     {"tool_file_of_no_bytes", {{"tools.punch.file.empty", 6}}},
     {"tool_free_form", {{"tools.punch.file.free_form", 2}}},
+    {"tool_sheet_upside_down", {{"tools.punch.sheet.side", 0}}},
     {"tool_inside_out", {{"tools.punch.outward", 0}}},
     {"tool_names_a_missing_corner", {{"tools.punch.file.index", 4}}},
     {"tool_not_closed", {{"tools.punch.closed", 0}}},
