@@ -226,7 +226,7 @@ TEST_CASE("a die drawn as a sheet is the die that it bounds, whichever way its n
   add_line(profile, {0.0956, 0.0}, 29);
   add_arc(profile, {0.092, -0.02}, 0.02, 0.5 * std::numbers::pi, std::numbers::pi, 24);
   add_line(profile, {0.072, -0.1}, 20);
-  const TriangleMesh drawn = revolved(profile, 360, false);
+  const TriangleMesh drawn = revolved(profile, 180, false);
   StampingSpec spec;
   spec.blank.size = {0.32, 0.32};
   spec.process.stroke = 0.07;
