@@ -164,6 +164,7 @@ FrictionSpec friction_of(const Settings& settings, const std::filesystem::path& 
   friction.model.film = film_of(settings);
   friction.model.rheology = rheology_of(settings);
   friction.model.effects = effects_of(settings);
+  friction.model.conduction = conduction_of(settings, friction.model.film.thickness);
   friction.contact_pressure = contact_pressure_of(settings);
   const std::string area = "friction.calibration.plate_area";
   friction.has_plate_area = settings.has(area);

@@ -122,6 +122,21 @@ std::vector<Key> friction_law_keys() {
   return keys;
 }
 
+std::vector<Key> conduction_keys() {
+  std::vector<Key> keys{
+      {.path = "friction.film_temperature",
+       .type = KeyType::choice,
+       .presence = Presence::defaulted,
+       .default_text = "closed_form",
+       .choices = {"closed_form", "conduction"},
+       .stage = Stage::friction,
+       .help = "Where effects F1, F11 and F12 take the film's temperature from: formulas of their "
+               "own, or one conduction through tool, film and ply."}};
+  append(keys, keys_of<friction::FilmConductionSpec>(
+                   "friction.conduction", "friction.film_temperature=conduction", Stage::friction, false));
+  return keys;
+}
+
 std::vector<Key> rheology_keys() {
   std::vector<Key> keys;
   for_each_alternative<friction::Flow>([&]<class F>(const F&) {
@@ -165,6 +180,13 @@ std::optional<friction::Law> further_law_of(const Settings& settings, const std:
     chosen = std::move(law);
   });
   return chosen;
+}
+
+std::optional<friction::FilmConduction> conduction_of(const Settings& settings, double film_thickness) {
+  if (!settings.is("friction.film_temperature", "conduction")) return {};
+  friction::FilmConductionSpec spec;
+  take_fields(settings, "friction.conduction", spec);
+  return friction::film_conduction(spec, film_thickness);
 }
 
 friction::Rheology rheology_of(const Settings& settings) {

@@ -55,6 +55,14 @@ TEST_CASE("every law, rheology and effect comes out of the cache with its bits",
       CAPTURE(friction::id_of(law), rheology.flow.index(), rheology.temperature.index());
       check_kept(model);
     }
+  friction::Model heated = sample();
+  friction::FilmConductionSpec spec{.contact_resistance = 3e-4};
+  move_numbers(spec);
+  heated.law = friction::HerseyPower{.scale = 0.325, .exponent = 0.136};
+  heated.conduction = friction::film_conduction(spec, 0.069e-3);
+  heated.effects.tool_temperature_film = friction::ToolTemperatureFilm{.weight = 0.9, .settling = 0.05};
+  heated.effects.shear_heating = friction::ShearHeating{.amplitude = 1.0};
+  check_kept(heated);
   for (const NamedEffect& effect : every_effect()) {
     friction::Model model = sample();
     model.law = friction::HerseyPower{.scale = 0.325, .exponent = 0.136};
