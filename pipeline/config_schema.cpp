@@ -378,6 +378,7 @@ std::vector<Key> all_keys() {
   append(keys, friction_law_keys());
   append(keys, conduction_keys());
   append(keys, friction_test_keys());
+  append(keys, rig_keys());
   append(keys, process_keys());
   append(keys, blank_keys());
   append(keys, tool_keys());

@@ -3,6 +3,7 @@
 #include <vector>
 
 #include "friction/model.h"
+#include "friction/rig/machine.h"
 #include "pipeline/config_reader.h"
 #include "pipeline/config_schema.h"
 
@@ -23,6 +24,10 @@ std::vector<std::string> further_forms();
 /// The law, if it is one of those; a table is read from its file.
 /// @throws InputError  if the table is at fault
 std::optional<friction::Law> further_law_of(const Settings& settings, const std::filesystem::path& folder);
+
+/// The friction rig as a machine: keys below friction_test.rig, which switch it on by being there.
+std::vector<Key> rig_keys();
+friction::Machine machine_of(const Settings& settings);
 
 /// The film's conduction where the case asks for it, computed.
 std::optional<friction::FilmConduction> conduction_of(const Settings& settings, double film_thickness);
