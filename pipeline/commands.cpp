@@ -127,7 +127,8 @@ void run_grid_error(const Case& a_case, const RunOptions& options, RunFolder& fo
 }
 
 std::string description_of(const Case& a_case) {
-  if (!a_case.stamping) return a_case.cell ? "One unit cell of the weave." : "The friction test.";
+  if (!a_case.stamping)
+    return a_case.cell && !a_case.friction_machine ? "One unit cell of the weave." : "The friction test.";
   const auto& s = *a_case.stamping;
   const std::string punch = s.punch.file
                                 ? "by the punch of " + s.punch.file->source.file.filename().string()

@@ -107,9 +107,9 @@ std::string verdict_list(const ReportInput& input) {
 }
 
 std::string header(const ReportInput& input) {
-  const std::string_view kind = input.stamping ? "Stamping report"
-                                : input.cell   ? "Unit-cell report"
-                                               : "Friction report";
+  const std::string_view kind = input.stamping                             ? "Stamping report"
+                                : input.cell && input.friction_rig.empty() ? "Unit-cell report"
+                                                                           : "Friction report";
   std::string out =
       fmt::format("<header>\n<p class=\"kind\">heddle · {}</p>\n<h1>{}</h1>\n", kind, escape(input.name));
   if (!input.description.empty()) out += fmt::format("<p class=\"lead\">{}</p>\n", escape(input.description));
