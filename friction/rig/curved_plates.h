@@ -1,5 +1,6 @@
 #pragma once
 
+#include <numbers>
 #include <vector>
 
 #include "core/curve.h"
@@ -11,8 +12,8 @@ namespace heddle::friction {
 /// bending" row; it prints no shape, so radius and angle are ASSUMED). The path of the fabric's middle; the
 /// plates lie half a thickness to either side.
 struct SCurve {
-  double radius = 50e-3;  ///< R of both arcs [m], > 0
-  double angle = 0.35;    ///< steepest slope of the path [rad], 0 < angle < pi/2
+  double radius = 50e-3;                           ///< R of both arcs [m], > 0
+  double angle = 20.0 * std::numbers::pi / 180.0;  ///< steepest slope of the path [rad], 0 < angle < pi/2
 
   double arcs() const { return 2.0 * radius * angle; }  ///< length of both together [m]
 };
