@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 #include <utility>
 
 #include <fmt/format.h>
@@ -145,8 +146,20 @@ FrictionRigRow rig_row(const Bench& bench, const Pull& pull) {
   return row;
 }
 
-/// How far law and finite elements are apart, and what the bend adds.
-void add_notes(FrictionRigStage& stage) {
+/// What of the machine is assumed, and how far law and finite elements are apart.
+void add_notes(const Bench& bench, FrictionRigStage& stage) {
+  const friction::Drive& drive = bench.machine.machine.drive;
+  stage.notes.push_back(fmt::format(
+      "The rig's numbers are priors: stiffness {:g} N/m, holder {:g} kg, damping {:g} of critical, "
+      "acceleration {:g} "
+      "m/s^2, backlash {:g} mm above {:g} mm/s{}{}.",
+      drive.stiffness, drive.holder_mass, drive.damping, drive.acceleration, 1e3 * drive.backlash,
+      1e3 * drive.own_speed,
+      bench.machine.machine.cam ? "; and how its load relaxes under the cam" : "; the normal force is held",
+      std::any_of(stage.rows.begin(), stage.rows.end(), [](const auto& row) { return row.curved; })
+          ? fmt::format("; S-curve plates of {:g} mm and {:.3g} deg", 1e3 * bench.machine.bend.radius,
+                        bench.machine.bend.angle * 180.0 / std::numbers::pi)
+          : ""));
   double worst = 0.0;
   int compared = 0;
   std::string where;
@@ -180,7 +193,7 @@ FrictionRigStage run_friction_rig_stage(const Case& a_case, const friction::Mode
     if (bench.machine.finite_elements) run_elements(bench, pull, row, stage);
     stage.rows.push_back(std::move(row));
   }
-  add_notes(stage);
+  add_notes(bench, stage);
   return stage;
 }
 

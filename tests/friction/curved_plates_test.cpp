@@ -1,6 +1,5 @@
 #include <catch2/catch.hpp>
 #include <cmath>
-#include <cstdio>
 
 #include "friction/rig/curved_plates.h"
 
@@ -73,8 +72,6 @@ TEST_CASE("the S of the assumed shape adds a few percent to a pull", "[friction]
   Model model{.law = HerseyPower{.scale = 0.325, .exponent = 0.136}, .film = {}, .effects = {}, .box = {}};
   const double flat = run_friction_test(model, row(), {}).pull_force;
   const auto pull = pull_over({}, model, row(), {}, linear, 0.1);
-  std::printf("S-curve %g N, flat %g N: %+.2f %%, released %.1f %%\n", pull.pull_force, flat,
-              100 * (pull.pull_force / flat - 1), 100 * pull.released);
   CHECK(pull.pull_force > flat);
   CHECK(pull.pull_force < 1.05 * flat);
 }
