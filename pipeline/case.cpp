@@ -541,6 +541,14 @@ void note_assumptions(Case& a_case) {
         "process.blank_temperature = {} lies below the melting range of polypropylene (about 160 degC, "
         "recalled): the melt's viscosity is carried on to where the resin is solid",
         a_case.settings.find("process.blank_temperature")->written));
+  if (a_case.friction && a_case.friction->model.conduction) {
+    const friction::Effects& effects = a_case.friction->model.effects;
+    if (!friction::is_on(effects.tool_temperature_film) && !friction::is_on(effects.solidification) &&
+        !friction::is_on(effects.shear_heating))
+      a_case.notes.push_back(
+          "friction.film_temperature = conduction changes nothing by itself: effects tool_temperature_film, "
+          "solidification and shear_heating draw on it, and none of them is on");
+  }
   const bool artefact = a_case.stamping && (a_case.stamping->artefact.mass_scaling != 1.0 ||
                                             a_case.stamping->artefact.stabilisation != 0.0);
   if (artefact) a_case.notes.push_back("artefact: a non-physical help is switched on");

@@ -217,6 +217,20 @@ TEST_CASE(
   CHECK_FALSE(other.friction_machine->machine.cam);
 }
 
+TEST_CASE("a film conduction that no effect draws on is noted", "[pipeline][config]") {
+  const auto notes = [](const std::vector<std::string>& assignments) {
+    std::string all;
+    for (const std::string& note : read_case_text(small_stamping, "x.yaml", "", assignments).notes)
+      all += note + "\n";
+    return all;
+  };
+  const std::string idle = "changes nothing by itself";
+  CHECK_THAT(notes({"friction.film_temperature=conduction"}), Catch::Contains(idle));
+  CHECK_THAT(notes({}), !Catch::Contains(idle));
+  CHECK_THAT(notes({"friction.film_temperature=conduction", "effects.solidification={amplitude: 0.5}"}),
+             !Catch::Contains(idle));
+}
+
 TEST_CASE("a value set on the command line counts as if it stood in the file", "[pipeline][config]") {
   const Case read = read_case_text(small_stamping, "x.yaml", "",
                                    {"weave.gap=1.5 mm", "blank.size=[400 mm, 0.3 m]", "fabric.shear_rate=off",
