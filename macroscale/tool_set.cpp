@@ -194,6 +194,7 @@ Shape raised(Shape shape, double z) {
     void operator()(CylinderShape& s) const { s.centre.z() += z; }
     void operator()(HemisphereShape& s) const { s.apex.z() += z; }
     void operator()(RingShape& s) const { s.level += z; }
+    void operator()(CurvedPlateShape& s) const { s.level += z; }
     void operator()(BandShape& s) const { s.offset.z() += z; }
   };
   std::visit(Raise{z}, shape);

@@ -172,7 +172,9 @@ Canvas draw(const LineChart& chart) {
   std::vector<std::vector<Point>> lines;
   for (std::size_t i = 0; i < chart.series.size(); ++i) {
     lines.push_back(pixels_of(chart.series[i], x, y));
-    canvas.polyline(lines.back(), series_style("line", i));
+    if (!chart.series[i].dots) canvas.polyline(lines.back(), series_style("line", i));
+    for (std::size_t k = 0; chart.series[i].dots && k < lines.back().size(); ++k)
+      canvas.disc(lines.back()[k], 3.5, series_style("dot", i));
   }
   if (named) label_lines(canvas, frame, chart.series, lines);
   return canvas;

@@ -22,6 +22,7 @@ struct Series {
   std::string name;  ///< written at the end of its line
   std::vector<double> x,
       y;  ///< same size; points that are not finite, or not > 0 on a logarithmic axis, are left out
+  bool dots = false;  ///< single points instead of a line
 };
 
 /// Lines over a common abscissa, each named at its right end in its own colour and dash.

@@ -184,6 +184,11 @@ std::vector<Key> friction_keys() {
        .stage = friction, .used_when = direct_linear, .help = "b of the linear form."},
       {.path = "friction.reference_hersey", .type = KeyType::quantity, .presence = required, .range = "(0, )",
        .stage = friction, .used_when = direct_linear, .help = "Hs0 of the linear form."},
+  };
+}
+
+std::vector<Key> friction_test_keys() {
+  return {
       {.path = "friction_test.data", .type = KeyType::file, .presence = required, .stage = Stage::friction_test,
        .help = "Measured friction forces to compare with."},
       {.path = "friction_test.design", .type = KeyType::file, .presence = optional, .stage = Stage::friction_test,
@@ -375,8 +380,11 @@ std::vector<Key> all_keys() {
   append(keys, rheology_keys());
   append(keys, forming_keys());
   append(keys, friction_keys());
-  append(keys, friction_law_keys());
   append(keys, calibration_weave_keys());
+  append(keys, friction_law_keys());
+  append(keys, conduction_keys());
+  append(keys, friction_test_keys());
+  append(keys, rig_keys());
   append(keys, process_keys());
   append(keys, blank_keys());
   append(keys, tool_keys());
