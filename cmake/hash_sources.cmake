@@ -4,7 +4,7 @@
 # Files are listed when this runs, not when the build was configured: a header that is new counts at once.
 cmake_minimum_required(VERSION 3.25)
 set(stage_files case.h case.cpp stages.h stages.cpp friction_keys.h friction_keys.cpp friction_store.h
-    friction_store.cpp stage_store.h stage_store.cpp stamping_record.h stamping_record.cpp)
+    friction_store.cpp friction_rig_stage.h friction_rig_stage.cpp stage_store.h stage_store.cpp stamping_record.h stamping_record.cpp)
 
 function(hash_of result)
   set(text "")

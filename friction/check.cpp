@@ -215,6 +215,7 @@ Problems check(const Model& model) {
   }
   std::visit([&](const auto& law) { check_law(law, model.box, problems); }, model.law);
   check_box(model.box, problems);
+  if (model.conduction) check_fields(model.conduction->spec, "friction.conduction", problems);
   for_each_effect(model.effects, [&](const auto& effect) {
     if (effect) check_effect(*effect, problems);
   });

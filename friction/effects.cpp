@@ -1,5 +1,7 @@
 #include "friction/effects.h"
 
+#include <cmath>
+
 #include "friction/hersey.h"
 
 namespace heddle::friction {
@@ -66,9 +68,10 @@ Sensitive contact_area(const Effects& effects, const Inputs& inputs) {
 FilmState film_state(const Effects& effects, const Rheology& rheology, const PowerLawFilm& film,
                      const Inputs& inputs, const Sensitive& area) {
   FilmState state;
-  state.temperature = is_on(effects.tool_temperature_film)
-                          ? temperature_with(*effects.tool_temperature_film, inputs)
-                          : inputs.fabric_temperature;
+  state.temperature =
+      is_on(effects.tool_temperature_film)
+          ? temperature_with(*effects.tool_temperature_film, rheology.temperature, film, inputs)
+          : inputs.fabric_temperature;
   state.thickness = is_on(effects.film_squeeze_out)
                         ? thickness_with(*effects.film_squeeze_out, film.thickness, inputs)
                         : Sensitive(film.thickness);
@@ -81,9 +84,13 @@ FilmState film_state(const Effects& effects, const Rheology& rheology, const Pow
   if (is_on(effects.viscosity_plateau))
     state.viscosity = viscosity_with(*effects.viscosity_plateau, state.viscosity,
                                      state.temperature.mapped(shift.log, shift.slope));
-  if (is_on(effects.shear_heating))
-    state.viscosity = viscosity_with(*effects.shear_heating, state.viscosity,
-                                     state.temperature.mapped(-shift.slope, -shift.curve), inputs.slip_speed);
+  if (is_on(effects.shear_heating)) {
+    const double cold = state.viscosity.value;
+    state.viscosity = viscosity_with(
+        heating_strength(*effects.shear_heating, inputs, film.thickness * film.rate_floor), state.viscosity,
+        state.temperature.mapped(-shift.slope, -shift.curve), inputs.slip_speed);
+    if (shift.slope < 0.0) state.heating = std::log(state.viscosity.value / cold) / shift.slope;
+  }
 
   const FlooredPressure p = floored(inputs.pressure.value);
   const Sensitive floored_rate = sqrt(rate * rate + film.rate_floor * film.rate_floor);
@@ -97,11 +104,12 @@ void advance(const Effects& effects, const Context& context, ContactState& state
   if (is_on(effects.wear)) state.load_slip += context.pressure * context.slip_speed * context.time_step;
 }
 
-bool has_memory(const Effects& effects) {
+bool has_memory(const Effects& effects, bool conduction) {
   const auto& film = effects.tool_temperature_film;
   return is_on(effects.static_peak) || is_on(effects.sliding_evolution) || is_on(effects.film_squeeze_out) ||
          is_on(effects.dwell_ageing) || is_on(effects.solidification) || is_on(effects.wear) ||
-         (is_on(film) && film->settling > 0.0);
+         (is_on(film) && (conduction || film->settling > 0.0)) ||
+         (conduction && is_on(effects.shear_heating));
 }
 
 }  // namespace heddle::friction

@@ -109,6 +109,7 @@ struct FilmState {
   Sensitive thickness;    ///< h [m]
   Sensitive viscosity;    ///< eta [Pa s]
   Sensitive hersey;       ///< Hs [-]
+  double heating = 0.0;  ///< rise at which the film at one temperature would be as thin as the heated one [K]
 };
 FilmState film_state(const Effects& effects, const Rheology& rheology, const PowerLawFilm& film,
                      const Inputs& inputs, const Sensitive& area);
@@ -118,6 +119,7 @@ FilmState film_state(const Effects& effects, const Rheology& rheology, const Pow
 void advance(const Effects& effects, const Context& context, ContactState& state);
 
 /// Whether mu at rest or after a pull differs, so that a friction test must follow the pull.
-bool has_memory(const Effects& effects);
+/// @param conduction  the film's temperature comes from a film conduction
+bool has_memory(const Effects& effects, bool conduction);
 
 }  // namespace heddle::friction

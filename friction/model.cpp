@@ -82,6 +82,10 @@ void flag_falling(Friction& friction) {
   if (friction.dmu_dspeed != 0.0) friction.convex = friction.dmu_dspeed > 0.0;
 }
 
+const FilmConduction* conduction_of(const Model& model) {
+  return model.conduction ? &*model.conduction : nullptr;
+}
+
 /// Everything but the state: the plain chain without memory of a batch's common case first.
 template <class AnyLaw>
 Friction coefficient_at(const AnyLaw& law, const Model& model, const Plan& plan, const Context& context,
@@ -100,20 +104,20 @@ Friction coefficient_at(const AnyLaw& law, const Model& model, const Plan& plan,
       Friction result = on_hersey_number(law, model, hersey);
       shift(model, context, result);
       if (!plan.stages.coefficient) return result;
-      const Inputs inputs(context, state);
+      const Inputs inputs(context, state, conduction_of(model));
       apply_to_coefficient(model.effects, inputs, inputs.area_fraction, sensitive(hersey), result);
       flag_falling(result);
       return result;
     }
   }
-  const Inputs inputs(context, state);
+  const Inputs inputs(context, state, conduction_of(model));
   const Sensitive area = contact_area(model.effects, inputs);
   Sensitive hersey;
   Friction result;
   if constexpr (HerseyLaw<AnyLaw>) {
     const FilmState film = film_state(model.effects, model.rheology, model.film, inputs, area);
     result = on_film(law, model, film);
-    result.state.film_temperature = film.temperature.value;
+    result.state.film_temperature = film.temperature.value + film.heating;
     hersey = film.hersey;
   } else {
     result = on_point(law, inputs);
@@ -196,7 +200,8 @@ void evaluate(const Model& model, std::span<const Context> contexts, std::span<c
 
 bool has_memory(const Model& model) {
   return std::holds_alternative<StaticKinetic>(model.law) ||
-         std::holds_alternative<SlipResistance>(model.law) || has_memory(model.effects);
+         std::holds_alternative<SlipResistance>(model.law) ||
+         has_memory(model.effects, model.conduction.has_value());
 }
 
 Traction traction(const Model& model, const Context& context, const ContactState& state) {

@@ -1,10 +1,12 @@
 #pragma once
 
+#include <optional>
 #include <span>
 
 #include "core/problem.h"
 #include "friction/contact_point.h"
 #include "friction/effects.h"
+#include "friction/film/film_conduction.h"
 #include "friction/laws.h"
 #include "friction/power_law_film.h"
 #include "friction/rheology/rheology.h"
@@ -22,6 +24,8 @@ struct Model {
   Effects effects;
   CalibrationBox box;
   Rheology rheology = {};  ///< how the film's resin flows; as it stands, the film's own power law
+  /// Heat of the film, on which F1, F11 and F12 then draw; absent = their own closed forms.
+  std::optional<FilmConduction> conduction = {};
 };
 
 /// Whether mu depends on what the contact went through, so that a friction test must follow the pull.

@@ -84,6 +84,8 @@ inline Sensitive pow(const Sensitive& x, double exponent) {
   return x.mapped(power, exponent * power / x.value);
 }
 
+struct FilmConduction;  // friction/film/film_conduction.h
+
 /// The variables of one contact point with the memory it brings into the step.
 struct Inputs {
   Sensitive slip_speed, pressure, fabric_temperature, tool_temperature;
@@ -91,8 +93,10 @@ struct Inputs {
   Sensitive area_fraction;
   double slip_angle = 0.0;  ///< [rad], frozen in the lag
   double time_step = 0.0;   ///< [s]
+  /// How heat reaches the film; null = the effects' own closed forms.
+  const FilmConduction* conduction = nullptr;
 
-  Inputs(const Context& context, const ContactState& state)
+  Inputs(const Context& context, const ContactState& state, const FilmConduction* film_conduction = nullptr)
       : slip_speed(Sensitive::of(Variable::slip_speed, context.slip_speed)),
         pressure(Sensitive::of(Variable::pressure, context.pressure)),
         fabric_temperature(Sensitive::of(Variable::fabric_temperature, context.fabric_temperature)),
@@ -104,7 +108,8 @@ struct Inputs {
         slip_resistance(Sensitive::of(Variable::slip_resistance, state.slip_resistance)),
         area_fraction(pressure.mapped(context.area_fraction, context.area_slope)),
         slip_angle(context.slip_angle),
-        time_step(context.time_step) {}
+        time_step(context.time_step),
+        conduction(film_conduction) {}
 };
 
 /// mu and its slopes as one number, and back.

@@ -62,10 +62,12 @@ class Reader {
   void read_factor(const CsvRow& row) {
     line_ = row.line;
     const auto& cells = row.cells;
+    if (cells[0] == "bending") return read_bending(cells);
     const auto found = factors().find(cells[0]);
     if (found == factors().end()) {
-      report("friction.design.parameter"_rule, cells[0], "", "is no parameter of the friction test",
-             "Known are velocity, normal_force, tool_temperature, fabric_temperature and orientation.");
+      report(
+          "friction.design.parameter"_rule, cells[0], "", "is no parameter of the friction test",
+          "Known are velocity, normal_force, tool_temperature, fabric_temperature, orientation and bending.");
       return;
     }
     const Factor& factor = found->second;
@@ -75,6 +77,13 @@ class Reader {
     add_level(factor, cells[0], cells[2]);
     std::stringstream levels(cells[3]);
     for (std::string level; std::getline(levels, level, ';');) add_level(factor, cells[0], level);
+  }
+
+  void read_bending(const std::vector<std::string>& cells) {
+    design_.s_curve = cells[3] == "s_curve";
+    if (cells[1].empty() && cells[2] == "flat" && (design_.s_curve || cells[3].empty())) return;
+    report("friction.design.bending"_rule, "bending", fmt::format("{}", fmt::join(cells, ",")),
+           "must read bending,,flat,s_curve", "Leave the line out if all plates were flat.");
   }
 
   void add_level(const Factor& factor, const std::string& name, const std::string& text) {

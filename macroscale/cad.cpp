@@ -10,8 +10,8 @@
 #include <fstream>
 #include <iostream>
 #include <iterator>
+#include <map>
 #include <mutex>
-#include <set>
 #include <unordered_map>
 #include <utility>
 
@@ -131,8 +131,8 @@ std::vector<int> tags(int dimension) {
   return result;
 }
 
-/// 1 / size^2 averaged over a grid of points of a curved surface [1/mm^2].
-double inverse_square_size(int surface, double size, double angle) {
+/// Smallest radius of curvature over a grid of points of a curved surface [mm].
+double smallest_radius(int surface) {
   std::vector<double> low, high, parameters, largest, smallest, unused1, unused2;
   gmsh::model::getParametrizationBounds(2, surface, low, high);
   constexpr int n = 6;
@@ -143,47 +143,56 @@ double inverse_square_size(int surface, double size, double angle) {
     }
   }
   gmsh::model::getPrincipalCurvatures(surface, parameters, largest, smallest, unused1, unused2);
-  double sum = 0.0;
+  double most = 0.0;
   for (std::size_t i = 0; i < largest.size(); ++i) {
     const double curvature = std::max(std::abs(largest[i]), std::abs(smallest[i]));
-    const double here =
-        std::isfinite(curvature) && curvature > 0.0 ? std::min(size, angle / curvature) : size;
-    sum += 1.0 / (here * here);
+    if (std::isfinite(curvature)) most = std::max(most, curvature);
   }
-  return largest.empty() ? 1.0 / (size * size) : sum / static_cast<double>(largest.size());
+  return 1.0 / most;
 }
 
-/// Equilateral triangles of the size asked for; gmsh makes about a quarter more.
-double estimated_triangles(double size, double angle) {
+/// Edge length of each curved face [mm].
+std::map<int, double> curved_faces(const SurfaceResolution& resolution) {
+  std::map<int, double> sizes;
+  for (int surface : tags(2))
+    if (!is_plane(surface)) sizes[surface] = edge_length(resolution, mm * smallest_radius(surface)) / mm;
+  return sizes;
+}
+
+/// Equilateral triangles of the sizes asked for; gmsh makes about a quarter more.
+double estimated_triangles(const std::map<int, double>& curved, double size_on_planes) {
   double sum = 0.0;
   for (int surface : tags(2)) {
     double area = 0.0;
     gmsh::model::occ::getMass(2, surface, area);
-    const double large = growth_on_planes * size;
-    const double density =
-        is_plane(surface) ? 1.0 / (large * large) : inverse_square_size(surface, size, angle);
-    sum += area * density / (0.25 * std::sqrt(3.0));
+    const auto found = curved.find(surface);
+    const double size = found == curved.end() ? size_on_planes : found->second;
+    sum += area / (0.25 * std::sqrt(3.0) * size * size);
   }
   return sum;
 }
 
-/// Large edges inside planes, `size` on curved faces and all curves and points of their borders.
-void set_sizes(double size, double angle) {
-  std::set<std::pair<int, int>> fine;
-  for (int surface : tags(2)) {
-    if (is_plane(surface)) continue;
-    fine.insert({2, surface});
+/// A curved face's size holds on the curves and points of its border too, the smallest of those that meet
+/// there.
+void set_sizes(const std::map<int, double>& curved, double size_on_planes) {
+  std::map<std::pair<int, int>, double> sizes;
+  const auto allow = [&](const std::pair<int, int>& entity, double size) {
+    const auto [it, fresh] = sizes.emplace(entity, size);
+    if (!fresh) it->second = std::min(it->second, size);
+  };
+  for (const auto& [surface, size] : curved) {
+    allow({2, surface}, size);
     gmsh::vectorpair border, corners;
     gmsh::model::getBoundary({{2, surface}}, border, false, false, false);
-    for (const auto& curve : border) fine.insert(curve);
+    for (const auto& curve : border) allow(curve, size);
     gmsh::model::getBoundary({{2, surface}}, corners, false, false, true);
-    for (const auto& corner : corners) fine.insert(corner);
+    for (const auto& corner : corners) allow(corner, size);
   }
-  gmsh::option::setNumber("Mesh.MeshSizeMax", growth_on_planes * size);
-  gmsh::option::setNumber("Mesh.MeshSizeFromCurvature", 2.0 * std::numbers::pi / angle);
+  gmsh::option::setNumber("Mesh.MeshSizeMax", size_on_planes);
   gmsh::option::setNumber("Mesh.MeshSizeExtendFromBoundary", 1.0);
-  gmsh::model::mesh::setSizeCallback([fine, size](int dimension, int tag, double, double, double) {
-    return fine.contains({dimension, tag}) ? size : growth_on_planes * size;
+  gmsh::model::mesh::setSizeCallback([sizes, size_on_planes](int dimension, int tag, double, double, double) {
+    const auto found = sizes.find({dimension, tag});
+    return found == sizes.end() ? size_on_planes : found->second;
   });
 }
 
@@ -251,9 +260,8 @@ std::string count_of(std::size_t n, const char* what) {
 
 }  // namespace
 
-double chord_error_bound(const SurfaceResolution& resolution, double radius) {
-  const double edge = std::min(resolution.mesh_size, resolution.edge_angle * radius);
-  return edge * edge / (2.0 * radius);
+double edge_length(const SurfaceResolution& resolution, double radius) {
+  return std::min(resolution.mesh_size, std::sqrt(2.0 * radius * resolution.chord_error));
 }
 
 TriangleMesh step_surface(const std::filesystem::path& file, const SurfaceResolution& resolution) {
@@ -273,16 +281,18 @@ TriangleMesh step_surface(const std::filesystem::path& file, const SurfaceResolu
                      fmt::format("must be at most half the tool's largest extent ({:.4g} mm)", largest),
                      fmt::format("{:.2g} mm would give a hundred edges along it.", 0.01 * largest));
     }
-    const double estimate = estimated_triangles(size, resolution.edge_angle);
+    const std::map<int, double> curved = curved_faces(resolution);
+    const double estimate = estimated_triangles(curved, growth_on_planes * size);
     if (!(estimate <= static_cast<double>(resolution.most_triangles))) {
       throw CadError(
           "mesh_size",
           fmt::format(
               "must give at most {} triangles; about {:.2g} would be needed for {:.4g} x {:.4g} x {:.4g} mm",
               resolution.most_triangles, estimate, box[3] - box[0], box[4] - box[1], box[5] - box[2]),
-          "Enlarge it, or remove tiny fillets from the file: edges follow the smallest radius.");
+          "Enlarge it or chord_error, or remove tiny fillets from the file: edges follow the smallest "
+          "radius.");
     }
-    set_sizes(size, resolution.edge_angle);
+    set_sizes(curved, growth_on_planes * size);
     gmsh::model::mesh::generate(2);
     TriangleMesh mesh = collect_triangles();
     if (mesh.triangles.empty()) {
@@ -290,6 +300,17 @@ TriangleMesh step_surface(const std::filesystem::path& file, const SurfaceResolu
                      "Heal the solid in a CAD program.");
     }
     return mesh;
+  });
+}
+
+std::array<std::array<double, 3>, 2> step_box(const std::filesystem::path& file) {
+  const Session session;
+  return with_gmsh(file, [&] {
+    import(file);
+    std::array<double, 6> box{};
+    gmsh::model::getBoundingBox(-1, -1, box[0], box[1], box[2], box[3], box[4], box[5]);
+    for (double& x : box) x *= mm;
+    return std::array<std::array<double, 3>, 2>{{{box[0], box[1], box[2]}, {box[3], box[4], box[5]}}};
   });
 }
 

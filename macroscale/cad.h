@@ -3,7 +3,6 @@
 #include <array>
 #include <cstddef>
 #include <filesystem>
-#include <numbers>
 #include <stdexcept>
 #include <string>
 #include <vector>
@@ -24,27 +23,31 @@ class CadError : public std::runtime_error {
   std::string key_, way_out_;
 };
 
-/// How fine a CAD surface is cut into triangles. Lengths are targets: single edges become up to twice as long
-/// (1.95 times on the shipped punch).
+/// How fine a CAD surface is cut into triangles.
 struct SurfaceResolution {
-  double mesh_size = 2e-3;                      ///< edges on curved faces and their borders [m]
-  double edge_angle = std::numbers::pi / 12.0;  ///< edges are at most this times the radius [rad]
+  double mesh_size = 2e-3;  ///< target of edges on curved faces and their borders [m]; single ones are up to
+                            ///< twice as long (1.95 times on the shipped punch)
+  double chord_error = 50e-6;  ///< facets of a curved face stay nearer to it than this [m]
   std::size_t most_triangles = 2000000;
 };
 
-/// Distance between facets and a surface of radius `radius` that step_surface() stays below: L^2 / (2 R) with
-/// L = min(mesh_size, edge_angle R), the chord error (2 L)^2 / (8 R) of an edge twice as long as asked for
-/// [m].
-double chord_error_bound(const SurfaceResolution& resolution, double radius);
+/// Target of edges where the smaller radius of curvature is `radius`: sqrt(2 R chord_error), at which the
+/// chord error (2 L)^2 / (8 R) of an edge twice as long is what is allowed, and at most mesh_size [m].
+double edge_length(const SurfaceResolution& resolution, double radius);
 
 /// Surface of the solids in a STEP file, or of its faces if it holds no solid. Closed where the solid is;
 /// triangles of one face agree, but may point inwards (mesh_check repairs that).
 ///
-/// Edges on planes, where every edge is exact, grow to eight times `mesh_size` away from curved faces.
-/// Deterministic: one thread, Delaunay with a fixed seed. OpenCASCADE writes to standard output, which is
-/// turned to /dev/null meanwhile: nothing else of the process should write there. Calls wait for each other.
+/// Each face has one edge length, that of its smallest radius. Edges on planes, where every edge is exact,
+/// grow to eight times `mesh_size` away from curved faces. Deterministic: one thread, Delaunay with a fixed
+/// seed. OpenCASCADE writes to standard output, which is turned to /dev/null meanwhile: nothing else of the
+/// process should write there. Calls wait for each other.
 /// @throws CadError, also when the triangles estimated from areas and curvatures exceed the limit
 TriangleMesh step_surface(const std::filesystem::path& file, const SurfaceResolution& resolution);
+
+/// Low and high corner of the box around all that a STEP file holds [m].
+/// @throws CadError
+std::array<std::array<double, 3>, 2> step_box(const std::filesystem::path& file);
 
 using Polyline = std::vector<std::array<double, 2>>;
 

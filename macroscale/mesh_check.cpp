@@ -314,7 +314,9 @@ void examine_edges(const TriangleMesh& mesh, const std::vector<EdgeUse>& uses, T
     f.add("*.closed"_family,
           fmt::format("must be closed; {} only one triangle, the first at {}",
                       counted(open.count, "edge has", "edges have"), in_mm(open.first)),
-          "Inside and outside are undefined at a gap.");
+          "Inside and outside are undefined at a gap: close it, or write `sheet: on` beside the file for a "
+          "tool drawn "
+          "as a surface.");
   }
   if (crowded.count > 0) {
     f.add("*.edge_manifold"_family,

@@ -50,10 +50,10 @@ Scene stamping_scene(const StampingSpec& spec, const mesoscale::FabricProperties
 }
 
 // Rest under the binder force before the punch moves: the fabric is pressed through its thickness and stays
-// where it was laid, held in its plane as the friction to come would hold it. (Free, it would drift along tools
-// whose surfaces are triangles; held by friction, the start of a run would move with the lag of the friction.)
-// Only the edges of the rings are off balance, so residuals are small from the start and the tolerance must be
-// as well. Velocities are taken out after each step.
+// where it was laid, held in its plane as the friction to come would hold it. (Free, it would drift along
+// tools whose surfaces are triangles; held by friction, the start of a run would move with the lag of the
+// friction.) Only the edges of the rings are off balance, so residuals are small from the start and the
+// tolerance must be as well. Velocities are taken out after each step.
 StepSummary close_binder(Scene& scene, System& system, const SolveOptions& options, State& state,
                          StepData& step) {
   constexpr double dt = 0.02;  // [s]

@@ -386,10 +386,9 @@ std::string extents(const Box& box, double factor) {
 /// A unit slip is a factor 1000, 25.4 or 10; real tools lie well inside this window.
 constexpr double most_blanks = 20.0, least_blanks = 1.0 / 50.0;
 
-void require_size(const TriangleMesh& mesh, const ToolFile& tool, const Expectation& expected) {
+void require_size(const Box& box, const ToolFile& tool, const Expectation& expected) {
   const double needed = std::max({expected.blank_size[0], expected.blank_size[1], expected.stroke});
-  if (!(needed > 0.0) || mesh.vertices.empty()) return;
-  const Box box = box_of(mesh);
+  if (!(needed > 0.0)) return;
   const auto fits = [&](double extent) {
     return extent <= most_blanks * needed && extent >= least_blanks * needed;
   };
@@ -429,7 +428,10 @@ FileType type_of(const ToolFile& tool, const Expectation& expected) {
 TriangleMesh read_step(const ToolFile& tool, const Expectation& expected) {
   require_step(tool.file, tool.length_unit, expected.key);
   try {
-    return step_surface(tool.file, {tool.mesh_size, tool.edge_angle, most_tool_triangles});
+    // First: a tool a thousand times too large would take a million times too many triangles.
+    const auto [low, high] = step_box(tool.file);
+    require_size({low, high}, tool, expected);
+    return step_surface(tool.file, {tool.mesh_size, tool.chord_error, most_tool_triangles});
   } catch (const CadError& error) {
     const bool of_file = error.key() == "file";
     const std::string key = expected.key + "." + error.key();
@@ -450,9 +452,34 @@ Problems check_numbers(const ToolFile& tool, const Expectation& expected) {
          "must be > 0", "mm for most tools.");
   demand(std::isfinite(tool.mesh_size) && tool.mesh_size > 0.0, "mesh_size", tool.mesh_size, "must be > 0",
          "2 mm suits a part of 0.3 m.");
-  demand(tool.edge_angle > 0.0 && tool.edge_angle <= 0.5 * std::numbers::pi, "edge_angle", tool.edge_angle,
-         "must satisfy 0 < angle <= 90 deg", "15 deg keeps facets within 4 % of the radius.");
+  demand(std::isfinite(tool.chord_error) && tool.chord_error > 0.0, "chord_error", tool.chord_error,
+         "must be > 0", "0.05 mm is a thirtieth of the fabric's thickness.");
   return problems;
+}
+
+// Twice the signed area that a mesh shows from above: positive if its normals point up on the whole.
+double seen_from_above(const TriangleMesh& mesh) {
+  double sum = 0.0;
+  for (const auto& t : mesh.triangles) {
+    const Place &a = mesh.vertices[t[0]], &b = mesh.vertices[t[1]], &c = mesh.vertices[t[2]];
+    sum += (b[0] - a[0]) * (c[1] - a[1]) - (b[1] - a[1]) * (c[0] - a[0]);
+  }
+  return sum;
+}
+
+// A sheet has no inside to tell how its normals should point: the fabric does.
+void face_the_fabric(LoadedTool& loaded, const ToolFile& tool, const Expectation& expected, bool may_turn) {
+  if (expected.fabric_side * seen_from_above(loaded.mesh) >= 0.0) return;
+  const std::string key = expected.key + ".sheet";
+  if (!may_turn)
+    throw InputError({{"*.sheet.side"_family.of(expected.key), key, "on",
+                       fmt::format("must have its normals {}, where the fabric is",
+                                   expected.fabric_side > 0 ? "up" : "down"),
+                       fmt::format("`{}.repair: on` turns it, or turn it in the file.", expected.key),
+                       tool.file.string()}});
+  for (auto& t : loaded.mesh.triangles) std::swap(t[1], t[2]);
+  if (tool.repair)
+    loaded.repairs += fmt::format("{}turns the sheet to the fabric", loaded.repairs.empty() ? "" : ", ");
 }
 
 }  // namespace
@@ -475,7 +502,7 @@ TriangleMesh read_tool(const ToolFile& tool, const Expectation& expected) {
   if (mesh.triangles.empty())
     source.refuse("*.file.no_triangles"_family, 0, "must hold triangles; it holds none",
                   "Export the tool again.");
-  require_size(mesh, tool, expected);
+  if (type != FileType::step) require_size(box_of(mesh), tool, expected);
   return mesh;
 }
 
@@ -489,6 +516,8 @@ LoadedTool load_tool(const ToolFile& tool, const Expectation& expected) {
   }
   Problems problems = check(loaded.mesh, expected.key, tool.file.string(), tool.topology);
   if (!problems.empty()) throw InputError(std::move(problems));
+  if (tool.topology == TopologyRule::open_allowed)
+    face_the_fabric(loaded, tool, expected, tool.repair || from_cad);
   return loaded;
 }
 

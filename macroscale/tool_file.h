@@ -2,7 +2,6 @@
 
 #include <array>
 #include <filesystem>
-#include <numbers>
 #include <string>
 
 #include "core/triangle_mesh.h"
@@ -15,7 +14,7 @@ struct ToolFile {
   std::filesystem::path file;  ///< by extension: .step .stp, .stl (text or binary), .obj
   double length_unit = 1e-3;   ///< of the file's coordinates [m]; a STEP file must state the same
   double mesh_size = 2e-3;     ///< target of the largest edge on curved faces, for STEP [m]
-  double edge_angle = std::numbers::pi / 12.0;  ///< edges at most this times the radius, for STEP [rad]
+  double chord_error = 50e-6;  ///< facets stay this near to curved faces, for STEP [m]
   TopologyRule topology = TopologyRule::closed;
   bool repair = false;  ///< KEY.repair: apply repaired() before the mesh is checked
 };
@@ -25,6 +24,7 @@ struct Expectation {
   std::string key = "tools.punch";
   std::array<double, 2> blank_size{};  ///< [m]
   double stroke = 0.0;                 ///< [m]
+  int fabric_side = 0;                 ///< 1: the fabric is above the tool, -1: below; 0: not known
 };
 
 constexpr std::size_t most_tool_triangles = 2000000;
@@ -46,7 +46,8 @@ struct LoadedTool {
 };
 
 /// read_tool(), then repaired() where asked for (always for STEP: the kernel promises no orientation), then
-/// check(). This is what a run uses.
+/// check(). A sheet must turn its normals to the fabric, on the whole; repair turns it. This is what a run
+/// uses.
 /// @throws InputError
 LoadedTool load_tool(const ToolFile& tool, const Expectation& expected);
 

@@ -48,11 +48,14 @@ StampingSpec with_tools_loaded(StampingSpec spec, double thickness) {
   tbb::task_group bands;
   for (Source& source : sources) {
     if (!source.file || source.file->loaded) continue;
-    const Expectation expected{source.key, extent(outline_of(spec.blank)), spec.process.stroke};
+    const Expectation expected{source.key, extent(outline_of(spec.blank)), spec.process.stroke,
+                               source.role == Role::die ? 1 : -1};
+    const bool sheet = source.file->source.topology == TopologyRule::open_allowed;
     try {
       auto tool = std::make_shared<LoadedTool>(load_tool(source.file->source, expected));
       const ToolBandSpec band{.voxel = source.file->voxel,
                               .half_width = half_width,
+                              .sides = sheet ? Sides::open : Sides::closed,
                               .region = reach_of_fabric(spec, source.role, tool->mesh)};
       bands.run([&source, tool, band] {
         try {

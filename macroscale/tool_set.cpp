@@ -165,8 +165,8 @@ Box reach_of_fabric(const StampingSpec& spec, Role role, const TriangleMesh& mes
     const auto [low, high] =
         std::minmax_element(outline.outer.begin(), outline.outer.end(),
                             [c](const Point2& a, const Point2& b) { return a[c] < b[c]; });
-    reach.low[c] = (*low)[c] - stroke;
-    reach.high[c] = (*high)[c] + stroke;
+    reach.low[c] = (*low)[c] - margin;
+    reach.high[c] = (*high)[c] + margin;
   }
   // The binder stays on the blank, the die below it; the punch is down by the stroke at its end.
   if (role == Role::die)
@@ -194,6 +194,7 @@ Shape raised(Shape shape, double z) {
     void operator()(CylinderShape& s) const { s.centre.z() += z; }
     void operator()(HemisphereShape& s) const { s.apex.z() += z; }
     void operator()(RingShape& s) const { s.level += z; }
+    void operator()(CurvedPlateShape& s) const { s.level += z; }
     void operator()(BandShape& s) const { s.offset.z() += z; }
   };
   std::visit(Raise{z}, shape);

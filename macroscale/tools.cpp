@@ -73,6 +73,29 @@ Distance evaluate(const RingShape& ring, const Vector3d& x) {
   return d;
 }
 
+// Distance to the middle of the path, positive above it.
+Distance from_middle(const CurvedPlateShape& plate, const Vector3d& at) {
+  const Vector3d x = at - Vector3d(0.0, 0.0, plate.level);
+  const double radius = plate.path.radius, angle = plate.path.angle;
+  const double reach = radius * std::sin(angle), drop = radius * (1.0 - std::cos(angle));
+  if (x.x() <= plate.start) return flat(x.z(), Vector3d::UnitZ());
+  if (x.x() >= plate.start + 2.0 * reach) return flat(x.z() + 2.0 * drop, Vector3d::UnitZ());
+  // The two arcs meet on the line through their centres.
+  const Vector3d inflection(plate.start + reach, x.y(), -drop);
+  const Vector3d along(std::cos(angle), 0.0, -std::sin(angle));
+  if ((x - inflection).dot(along) <= 0.0)
+    return round(x - Vector3d(plate.start, x.y(), -radius), radius, Vector3d::UnitY());
+  Distance d =
+      round(x - Vector3d(plate.start + 2.0 * reach, x.y(), radius - 2.0 * drop), radius, Vector3d::UnitY());
+  return {-d.distance, -d.normal, -d.curvature};
+}
+
+Distance evaluate(const CurvedPlateShape& plate, const Vector3d& x) {
+  const Distance d = from_middle(plate, x);
+  if (plate.up) return {d.distance + 0.5 * plate.gap, d.normal, d.curvature};
+  return {0.5 * plate.gap - d.distance, -d.normal, -d.curvature};
+}
+
 Distance evaluate(const BandShape& tool, const Vector3d& x) {
   return evaluate(*tool.band, Vector3d(x - tool.offset));
 }
@@ -81,6 +104,21 @@ Distance evaluate(const BandShape& tool, const Vector3d& x) {
 
 std::string name_of(Role role) {
   return role == Role::punch ? "punch" : role == Role::die ? "die" : "binder";
+}
+
+Vector3d place_on(const CurvedPlateShape& plate, double s) {
+  const double level = plate.level;
+  const double radius = plate.path.radius, angle = plate.path.angle, half = radius * angle;
+  const double reach = radius * std::sin(angle), drop = radius * (1.0 - std::cos(angle));
+  if (s <= 0.0) return {plate.start + s, 0.0, level};
+  if (s <= half)
+    return {plate.start + radius * std::sin(s / radius), 0.0, level + radius * (std::cos(s / radius) - 1.0)};
+  if (s <= 2.0 * half) {
+    const double left = angle - (s - half) / radius;
+    return {plate.start + 2.0 * reach - radius * std::sin(left), 0.0,
+            level - 2.0 * drop + radius * (1.0 - std::cos(left))};
+  }
+  return {plate.start + 2.0 * reach + s - 2.0 * half, 0.0, level - 2.0 * drop};
 }
 
 Distance distance(const Shape& shape, const Vector3d& x) {

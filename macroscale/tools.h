@@ -6,6 +6,8 @@
 
 #include <Eigen/Core>
 
+#include "friction/rig/curved_plates.h"
+
 namespace heddle::macroscale {
 
 /// Signed distance to a rigid surface (positive outside the tool), its unit normal (gradient) and its
@@ -43,6 +45,20 @@ struct RingShape {
   bool up = true;
 };
 
+/// One of two matched plates along y, bent as `path` from x = start on; the middle between them lies at z =
+/// level before the bend. `up`: the lower plate, solid below. The distance is exact within the bend's radius
+/// of the path.
+struct CurvedPlateShape {
+  friction::SCurve path;
+  double start = 0.0;  ///< x where the first arc begins [m]
+  double level = 0.0;  ///< z of the middle there [m]
+  double gap = 0.0;    ///< between the plates, along their normal [m]
+  bool up = true;
+};
+
+/// The path's middle at s from x = start on.
+Eigen::Vector3d place_on(const CurvedPlateShape& plate, double s);
+
 class ToolBand;
 
 /// A tool from a file: the narrow band about its surface (macroscale/tool_band.h, which says what holds
@@ -53,7 +69,8 @@ struct BandShape {
   Eigen::Vector3d offset = Eigen::Vector3d::Zero();  ///< where the file's origin stands [m]
 };
 
-using Shape = std::variant<PlaneShape, CylinderShape, HemisphereShape, RingShape, BandShape>;
+using Shape =
+    std::variant<PlaneShape, CylinderShape, HemisphereShape, RingShape, CurvedPlateShape, BandShape>;
 
 Distance distance(const Shape& shape, const Eigen::Vector3d& x);
 

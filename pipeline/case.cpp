@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 #include <iterator>
 #include <set>
 
@@ -175,6 +176,7 @@ FrictionSpec friction_of(const Settings& settings, const std::filesystem::path& 
   friction.model.film = film_of(settings);
   friction.model.rheology = rheology_of(settings);
   friction.model.effects = effects_of(settings);
+  friction.model.conduction = conduction_of(settings, friction.model.film.thickness);
   friction.contact_pressure = contact_pressure_of(settings);
   const std::string area = "friction.calibration.plate_area";
   friction.has_plate_area = settings.has(area);
@@ -188,7 +190,18 @@ FrictionSpec friction_of(const Settings& settings, const std::filesystem::path& 
     friction.calibration_weave = weave_of(settings, "friction.calibration.weave");
     friction.fit_temperature_slope = slope_is_fitted(settings);
   }
+  take(settings, "friction_test.rig.pull_length", friction.rig.pull_length);
+  take(settings, "friction_test.rig.dwell", friction.rig.dwell_before);
   return friction;
+}
+
+FrictionMachineSpec friction_machine_of(const Settings& settings) {
+  FrictionMachineSpec spec;
+  spec.machine = machine_of(settings);
+  take(settings, "friction_test.rig.bend.radius", spec.bend.radius);
+  take(settings, "friction_test.rig.bend.angle", spec.bend.angle);
+  spec.finite_elements = settings.is("friction_test.rig.finite_elements", "on");
+  return spec;
 }
 
 FrictionTestSpec friction_test_of(const Settings& settings, const std::filesystem::path& folder) {
@@ -220,7 +233,9 @@ std::optional<macroscale::ToolFileSpec> tool_file_of(const Settings& settings, c
   if (settings.has(block + ".length_unit"))
     spec.source.length_unit = read_quantity("1 " + settings.text(block + ".length_unit"), "mm").value;
   take(settings, block + ".mesh_size", spec.source.mesh_size);
+  take(settings, block + ".chord_error", spec.source.chord_error);
   take(settings, block + ".voxel", spec.voxel);
+  if (settings.is(block + ".sheet", "on")) spec.source.topology = macroscale::TopologyRule::open_allowed;
   spec.source.repair = settings.is(block + ".repair", "on");
   return spec;
 }
@@ -264,6 +279,8 @@ Case case_of(const ReadConfig& config, const std::filesystem::path& folder) {
   if (runs(Stage::cell)) result.cell = cell_of(settings);
   if (runs(Stage::friction)) result.friction = friction_of(settings, folder);
   if (runs(Stage::friction_test)) result.friction_test = friction_test_of(settings, folder);
+  if (result.friction_test && settings.blocks.count("friction_test.rig") > 0)
+    result.friction_machine = friction_machine_of(settings);
   if (runs(Stage::stamping)) result.stamping = stamping_of(settings, folder);
   result.grid_error = runs(Stage::grid_error) && settings.is("blank.grid_error", "on");
   if (runs(Stage::orientation_study)) {
@@ -442,6 +459,29 @@ Problems check_design(const std::filesystem::path& file) {
   return {};
 }
 
+/// The machine's plates and its finite elements.
+Problems check_machine(const Case& a_case) {
+  Problems problems;
+  const double length = std::sqrt(a_case.friction->rig.plate_area);
+  if (a_case.friction_machine->bend.arcs() > 0.95 * length)
+    problems.push_back(
+        {"friction_test.rig.bend.length"_rule,
+         "friction_test.rig.bend.radius",
+         "",
+         fmt::format("gives arcs of {:.4g} mm on plates {:.4g} mm long; they must fit with some "
+                     "level beside them",
+                     1e3 * a_case.friction_machine->bend.arcs(), 1e3 * length),
+         "Take a smaller radius or angle.",
+         "",
+         0,
+         {"friction_test.rig.bend.angle", "friction.calibration.plate_area"}});
+  if (a_case.friction_machine->finite_elements && !a_case.cell)
+    problems.push_back({"friction_test.rig.finite_elements.weave"_rule, "friction_test.rig.finite_elements",
+                        "", "needs a weave: the solver's fabric comes from it",
+                        "Add `weave:`, or write `off`."});
+  return problems;
+}
+
 /// Each angle names a folder of results.
 Problems check_distinct(const std::vector<double>& angles, const std::string& key) {
   std::vector<double> sorted = angles;
@@ -481,6 +521,7 @@ Problems check_between_keys(const Case& a_case, const ReadConfig& config) {
     if (a_case.friction_test->data != a_case.friction->calibration_data)
       append(problems, check_table(a_case.friction_test->data, false));
     append(problems, check_design(a_case.friction_test->design));
+    if (a_case.friction_machine) append(problems, check_machine(a_case));
   }
   if (a_case.calibrate) append(problems, check_calibrate(*a_case.calibrate, config.settings));
   if (a_case.stamping) {
@@ -516,6 +557,14 @@ void note_assumptions(Case& a_case) {
         "process.blank_temperature = {} lies below the melting range of polypropylene (about 160 degC, "
         "recalled): the melt's viscosity is carried on to where the resin is solid",
         a_case.settings.find("process.blank_temperature")->written));
+  if (a_case.friction && a_case.friction->model.conduction) {
+    const friction::Effects& effects = a_case.friction->model.effects;
+    if (!friction::is_on(effects.tool_temperature_film) && !friction::is_on(effects.solidification) &&
+        !friction::is_on(effects.shear_heating))
+      a_case.notes.push_back(
+          "friction.film_temperature = conduction changes nothing by itself: effects tool_temperature_film, "
+          "solidification and shear_heating draw on it, and none of them is on");
+  }
   const bool artefact = a_case.stamping && (a_case.stamping->artefact.mass_scaling != 1.0 ||
                                             a_case.stamping->artefact.stabilisation != 0.0);
   if (artefact) a_case.notes.push_back("artefact: a non-physical help is switched on");
@@ -623,6 +672,10 @@ std::vector<std::string> stage_lines(const Case& a_case) {
   }
   if (a_case.friction) lines.push_back(friction_line(*a_case.friction));
   if (a_case.friction_test) lines.push_back("friction test: comparison with friction_test.data");
+  if (a_case.friction_machine)
+    lines.push_back(
+        fmt::format("friction rig: each pull as a history{}",
+                    a_case.friction_machine->finite_elements ? ", and through the finite elements" : ""));
   if (a_case.stamping) {
     const macroscale::ProcessSpec& process = a_case.stamping->process;
     lines.push_back(fmt::format("macroscale: stroke {} in {}, {} steps", write_quantity(process.stroke, "mm"),

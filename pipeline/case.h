@@ -7,6 +7,8 @@
 
 #include "friction/friction_test.h"
 #include "friction/model.h"
+#include "friction/rig/curved_plates.h"
+#include "friction/rig/machine.h"
 #include "macroscale/stamping.h"
 #include "mesoscale/cell_spec.h"
 #include "pipeline/calibrate_keys.h"
@@ -33,6 +35,13 @@ struct FrictionTestSpec {
   std::filesystem::path design;  ///< ranges of the parameters; may be empty
 };
 
+/// The friction test as a machine, beside the comparison of single forces.
+struct FrictionMachineSpec {
+  friction::Machine machine;
+  friction::SCurve bend;         ///< of the S-curve plates
+  bool finite_elements = false;  ///< every pull through the stamping solver as well
+};
+
 /// The same blank and the same friction sample cut at several angles to the tows.
 struct OrientationStudySpec {
   std::vector<double> blanks;    ///< warp against x [rad]
@@ -45,6 +54,7 @@ struct Case {
   std::optional<mesoscale::CellSpec> cell;
   std::optional<FrictionSpec> friction;
   std::optional<FrictionTestSpec> friction_test;
+  std::optional<FrictionMachineSpec> friction_machine;
   std::optional<macroscale::StampingSpec> stamping;
   bool grid_error = false;                                ///< the stamping is run once more on a coarser grid
   std::optional<OrientationStudySpec> orientation_study;  ///< runs the stamping once an angle

@@ -11,6 +11,7 @@
 #include "pipeline/cache.h"
 #include "pipeline/case.h"
 #include "pipeline/export_vtu.h"
+#include "pipeline/friction_rig_stage.h"
 #include "pipeline/grid_error_stage.h"
 #include "pipeline/interrupt.h"
 #include "pipeline/orientation.h"
@@ -34,6 +35,7 @@ struct Findings {
   std::optional<mesoscale::CellResult> cell;
   std::optional<WeavePictures> pictures;
   std::optional<FrictionStage> friction;
+  std::optional<FrictionRigStage> friction_rig;
   std::optional<macroscale::StampingResult> stamping;
   std::optional<macroscale::GridError> grid_error;
 };
@@ -95,6 +97,19 @@ void run_friction(const Case& a_case, RunFolder& folder, const Cache& cache, Fin
   for (const std::string& note : findings.friction->notes) folder.log("friction: " + note);
 }
 
+// The friction test as a machine.
+void run_friction_rig(const Case& a_case, RunFolder& folder, const Cache& cache, Findings& findings) {
+  if (!a_case.friction_machine) return;
+  findings.friction_rig =
+      cached<FrictionRigStage>(folder, cache, ChainStage::friction_rig, a_case, read_friction_rig_stage, [&] {
+        return run_friction_rig_stage(a_case, findings.friction->model,
+                                      findings.cell ? &findings.cell->fabric : nullptr);
+      });
+  folder.write("friction/friction_rig.csv", friction_rig_csv(findings.friction_rig->rows));
+  folder.write("friction/friction_history.csv", friction_history_csv(findings.friction_rig->history));
+  for (const std::string& note : findings.friction_rig->notes) folder.log("friction rig: " + note);
+}
+
 void run_stamping(const Case& a_case, RunFolder& folder, const Cache& cache, Findings& findings,
                   StampingStageOptions options) {
   if (!a_case.stamping) return;
@@ -112,7 +127,8 @@ void run_grid_error(const Case& a_case, const RunOptions& options, RunFolder& fo
 }
 
 std::string description_of(const Case& a_case) {
-  if (!a_case.stamping) return a_case.cell ? "One unit cell of the weave." : "The friction test.";
+  if (!a_case.stamping)
+    return a_case.cell && !a_case.friction_machine ? "One unit cell of the weave." : "The friction test.";
   const auto& s = *a_case.stamping;
   const std::string punch = s.punch.file
                                 ? "by the punch of " + s.punch.file->source.file.filename().string()
@@ -167,6 +183,14 @@ ReportInput report_input(const Case& a_case, const Findings& findings) {
     input.friction_test = findings.friction->test;
     input.friction_curve = findings.friction->curve;
     input.notes = findings.friction->notes;
+    input.film = findings.friction->model.conduction;
+  }
+  if (findings.friction_rig) {
+    input.friction_rig = findings.friction_rig->rows;
+    input.friction_history = findings.friction_rig->history;
+    input.plates = findings.friction_rig->plates;
+    input.notes.insert(input.notes.end(), findings.friction_rig->notes.begin(),
+                       findings.friction_rig->notes.end());
   }
   if (findings.stamping) {
     input.stamping = findings.stamping->summary;
@@ -196,6 +220,7 @@ std::vector<std::pair<std::string, std::string>> stage_hashes(const Case& a_case
   };
   if (a_case.cell) add(ChainStage::mesoscale);
   if (a_case.friction) add(ChainStage::friction);
+  if (a_case.friction_machine) add(ChainStage::friction_rig);
   if (a_case.stamping) add(ChainStage::macroscale);
   if (a_case.grid_error) add(ChainStage::grid_error);
   return hashes;
@@ -258,6 +283,21 @@ void print_friction(const FrictionStage& stage) {
   for (const std::string& note : stage.notes) fmt::print("{}\n", note);
 }
 
+void print_friction_rig(const FrictionRigStage& stage) {
+  fmt::print("{:<32}{:>9}{:>9}{:>9}{:>9}{:>11}\n", "pull as a machine", "law N", "steady N", "peak N",
+             "lost N", "elements N");
+  const auto force = [](const std::optional<double>& f) {
+    return f ? fmt::format("{:.1f}", *f) : std::string("-");
+  };
+  for (const FrictionRigRow& row : stage.rows) {
+    const auto lost =
+        row.normal_force_loss ? std::optional(*row.normal_force_loss * row.normal_force) : std::nullopt;
+    fmt::print("{:<32}{:>9.1f}{:>9}{:>9}{:>9}{:>11}\n", row.name, row.law_force, force(row.steady_force),
+               force(row.peak_force), force(lost), force(row.element_force));
+  }
+  for (const std::string& note : stage.notes) fmt::print("{}\n", note);
+}
+
 void print_stamping(const macroscale::StampingSummary& s, const std::optional<macroscale::GridError>& grid) {
   const bool known = grid && grid->known;
   const macroscale::GridError e = grid.value_or(macroscale::GridError{});
@@ -287,7 +327,8 @@ enum class Part { all, weave, friction };
 Case read_part(const RunOptions& options, Part part) {
   Case a_case = read_case(options.file, options.assignments);
   if (part != Part::all) a_case.stamping.reset();
-  if (part == Part::weave) a_case.friction.reset(), a_case.friction_test.reset();
+  if (part == Part::weave)
+    a_case.friction.reset(), a_case.friction_test.reset(), a_case.friction_machine.reset();
   const bool empty = part == Part::weave ? !a_case.cell : part == Part::friction ? !a_case.friction : false;
   if (empty)
     throw InputError({{"case.part"_rule, part == Part::weave ? "weave" : "friction", "",
@@ -301,6 +342,7 @@ Case read_part(const RunOptions& options, Part part) {
 void print_findings(const Case& a_case, const Findings& findings, Part part, const fs::path& folder) {
   if (findings.cell && part != Part::friction) print_cell(findings.cell->summary, findings.pictures->bodies);
   if (findings.friction && !findings.stamping) print_friction(*findings.friction);
+  if (findings.friction_rig && !findings.stamping) print_friction_rig(*findings.friction_rig);
   if (findings.stamping) print_stamping(findings.stamping->summary, findings.grid_error);
   print_attention(report_input(a_case, findings));
   fmt::print("results              {}\n", folder.string());
@@ -414,6 +456,7 @@ RunEnding run_part(const RunOptions& options, Part part) {
   run_cell(a_case, folder, cache, findings);
   if (interrupted_before_stamping()) return say_interrupted(options, folder, findings, steps);
   run_friction(a_case, folder, cache, findings);
+  run_friction_rig(a_case, folder, cache, findings);
   if (interrupted_before_stamping()) return say_interrupted(options, folder, findings, steps);
   if (a_case.stamping)
     run_stamping(a_case, folder, cache, findings,

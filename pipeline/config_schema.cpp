@@ -194,6 +194,11 @@ std::vector<Key> friction_keys() {
        .stage = friction, .used_when = direct_linear, .help = "b of the linear form."},
       {.path = "friction.reference_hersey", .type = KeyType::quantity, .presence = required, .range = "(0, )",
        .stage = friction, .used_when = direct_linear, .help = "Hs0 of the linear form."},
+  };
+}
+
+std::vector<Key> friction_test_keys() {
+  return {
       {.path = "friction_test.data", .type = KeyType::file, .presence = required, .stage = Stage::friction_test,
        .help = "Measured friction forces to compare with."},
       {.path = "friction_test.design", .type = KeyType::file, .presence = optional, .stage = Stage::friction_test,
@@ -279,9 +284,15 @@ std::vector<Key> tool_file_keys(const std::string& tool) {
       {.path = block + ".mesh_size", .type = KeyType::quantity, .unit = "mm", .presence = defaulted,
        .default_text = "2 mm", .range = "(0 mm, 1000 mm)", .stage = stamping, .used_when = with_file,
        .help = "Largest edge on curved faces of a STEP file."},
+      {.path = block + ".chord_error", .type = KeyType::quantity, .unit = "mm", .presence = defaulted,
+       .default_text = "0.05 mm", .range = "(0 mm, 10 mm)", .stage = stamping, .used_when = with_file,
+       .help = "Triangles stay this near to the curved faces of a STEP file; edges follow the smallest radius of a face."},
       {.path = block + ".voxel", .type = KeyType::quantity, .unit = "mm", .presence = defaulted,
        .default_text = "1 mm", .range = "(0 mm, 100 mm)", .stage = stamping, .used_when = with_file,
        .help = "Of the distance field; a twentieth of the radii that matter keeps its error small."},
+      {.path = block + ".sheet", .type = KeyType::choice, .presence = defaulted, .default_text = "off",
+       .choices = {"on", "off"}, .stage = stamping, .used_when = with_file,
+       .help = "on: a surface with a border instead of a solid; it must reach beyond whatever it is to meet."},
       {.path = block + ".repair", .type = KeyType::choice, .presence = defaulted, .default_text = "off",
        .choices = {"on", "off"}, .stage = stamping, .used_when = with_file,
        .help = "on: merge equal vertices, drop triangles without area, turn those that face the wrong way."},
@@ -379,8 +390,11 @@ std::vector<Key> all_keys() {
   append(keys, rheology_keys());
   append(keys, forming_keys());
   append(keys, friction_keys());
-  append(keys, friction_law_keys());
   append(keys, calibration_weave_keys());
+  append(keys, friction_law_keys());
+  append(keys, conduction_keys());
+  append(keys, friction_test_keys());
+  append(keys, rig_keys());
   append(keys, process_keys());
   append(keys, blank_keys());
   append(keys, tool_keys());

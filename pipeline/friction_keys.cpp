@@ -122,6 +122,21 @@ std::vector<Key> friction_law_keys() {
   return keys;
 }
 
+std::vector<Key> conduction_keys() {
+  std::vector<Key> keys{
+      {.path = "friction.film_temperature",
+       .type = KeyType::choice,
+       .presence = Presence::defaulted,
+       .default_text = "closed_form",
+       .choices = {"closed_form", "conduction"},
+       .stage = Stage::friction,
+       .help = "Where effects F1, F11 and F12 take the film's temperature from: formulas of their "
+               "own, or one conduction through tool, film and ply."}};
+  append(keys, keys_of<friction::FilmConductionSpec>(
+                   "friction.conduction", "friction.film_temperature=conduction", Stage::friction, false));
+  return keys;
+}
+
 std::vector<Key> rheology_keys() {
   std::vector<Key> keys;
   for_each_alternative<friction::Flow>([&]<class F>(const F&) {
@@ -165,6 +180,97 @@ std::optional<friction::Law> further_law_of(const Settings& settings, const std:
     chosen = std::move(law);
   });
   return chosen;
+}
+
+std::vector<Key> rig_keys() {
+  const std::string rig = "friction_test.rig";
+  const auto stage = Stage::friction_test;
+  std::vector<Key> keys{
+      {.path = rig + ".pull_length",
+       .type = KeyType::quantity,
+       .unit = "mm",
+       .presence = Presence::defaulted,
+       .default_text = "50 mm",
+       .range = "[5 mm, 10000 mm]",
+       .stage = stage,
+       .used_when = rig,
+       .help = "Slip at which the steady force is read (assumed)."},
+      {.path = rig + ".dwell",
+       .type = KeyType::quantity,
+       .unit = "s",
+       .presence = Presence::defaulted,
+       .default_text = "0 s",
+       .range = "[0 s, 100000 s]",
+       .stage = stage,
+       .used_when = rig,
+       .help = "Rest under load before the pull."},
+      {.path = rig + ".sampling_rate",
+       .type = KeyType::quantity,
+       .unit = "1/s",
+       .presence = Presence::defaulted,
+       .default_text = "100 1/s",
+       .range = "[1 1/s, 10000 1/s]",
+       .stage = stage,
+       .used_when = rig,
+       .help = "Of the load cells (prior)."},
+      {.path = rig + ".normal",
+       .type = KeyType::choice,
+       .presence = Presence::defaulted,
+       .default_text = "held",
+       .choices = {"held", "cam"},
+       .stage = stage,
+       .used_when = rig,
+       .help = "held: the normal force stays; cam: the gap stays, and the force relaxes."},
+      {.path = rig + ".finite_elements",
+       .type = KeyType::choice,
+       .presence = Presence::defaulted,
+       .default_text = "off",
+       .choices = {"off", "on"},
+       .stage = stage,
+       .used_when = rig,
+       .help = "Every pull through the stamping solver's finite elements as well; needs a weave."},
+      {.path = rig + ".bend.radius",
+       .type = KeyType::quantity,
+       .unit = "mm",
+       .presence = Presence::defaulted,
+       .default_text = "50 mm",
+       .range = "[2 mm, 10000 mm]",
+       .stage = stage,
+       .used_when = rig,
+       .help = "Of both arcs of the S-curve plates. Assumed: the paper does not give their shape."},
+      {.path = rig + ".bend.angle",
+       .type = KeyType::quantity,
+       .unit = "deg",
+       .presence = Presence::defaulted,
+       .default_text = "20 deg",
+       .range = "(0 deg, 80 deg]",
+       .stage = stage,
+       .used_when = rig,
+       .help = "Steepest slope of the S-curve plates (assumed)."}};
+  append(keys, keys_of<friction::Drive>(rig + ".drive", rig, stage, false));
+  append(keys, keys_of<friction::Sample>(rig + ".sample", rig, stage, false));
+  append(keys, keys_of<friction::CamGap>(rig + ".cam", rig + ".normal=cam", stage, false));
+  return keys;
+}
+
+friction::Machine machine_of(const Settings& settings) {
+  const std::string rig = "friction_test.rig";
+  friction::Machine machine;
+  take_fields(settings, rig + ".drive", machine.drive);
+  take_fields(settings, rig + ".sample", machine.sample);
+  if (settings.has(rig + ".sampling_rate")) machine.sampling_rate = settings.number(rig + ".sampling_rate");
+  if (settings.is(rig + ".normal", "cam")) {
+    machine.cam.emplace();
+    take_fields(settings, rig + ".cam", *machine.cam);
+  }
+  return machine;
+}
+
+std::optional<friction::FilmConduction> conduction_of(const Settings& settings, double film_thickness) {
+  if (!settings.is("friction.film_temperature", "conduction")) return {};
+  friction::FilmConductionSpec spec;
+  take_fields(settings, "friction.conduction", spec);
+  return friction::film_conduction(spec, film_thickness);
 }
 
 friction::Rheology rheology_of(const Settings& settings) {

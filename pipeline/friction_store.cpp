@@ -120,7 +120,8 @@ constexpr std::size_t size_of_visited_effects() {
 static_assert(size_of_visited_effects() == sizeof(Effects), "an effect that for_each_effect leaves out");
 static_assert(sizeof(friction::Model) == sizeof(friction::Law) + sizeof(friction::PowerLawFilm) +
                                              sizeof(Effects) + sizeof(friction::CalibrationBox) +
-                                             sizeof(friction::Rheology),
+                                             sizeof(friction::Rheology) +
+                                             sizeof(std::optional<friction::FilmConduction>),
               "a new part of the model: keep it");
 static_assert(sizeof(friction::Rheology) == sizeof(friction::Flow) + sizeof(friction::TemperatureLaw));
 
@@ -132,6 +133,10 @@ void write_model(Hdf5Writer& file, const friction::Model& model) {
   write_row(file, "/box", box_members(model.box));
   write_choice(file, "/flow", model.rheology.flow);
   write_choice(file, "/temperature_law", model.rheology.temperature);
+  if (model.conduction) {
+    write_term(file, "/conduction", model.conduction->spec);
+    file.write("/conduction/film_thickness", model.conduction->film_thickness);
+  }
   friction::for_each_effect(model.effects, [&]<class E>(const std::optional<E>& effect) {
     if (effect) write_term(file, std::string("/effects/") + About<E>::id, *effect);
   });
@@ -144,6 +149,9 @@ friction::Model read_model(const Hdf5Reader& file) {
   read_row(file, "/box", box_members(model.box));
   read_choice(file, "/flow", model.rheology.flow);
   read_choice(file, "/temperature_law", model.rheology.temperature);
+  if (file.has("/conduction/film_thickness"))  // its curves follow from its numbers
+    model.conduction = friction::film_conduction(read_term<friction::FilmConductionSpec>(file, "/conduction"),
+                                                 file.number("/conduction/film_thickness"));
   friction::for_each_effect(model.effects, [&]<class E>(std::optional<E>& effect) {
     const std::string group = std::string("/effects/") + About<E>::id;
     if (file.has(group + "/" + About<E>::fields[0].name)) effect = read_term<E>(file, group);

@@ -106,6 +106,47 @@ constexpr Column<FrictionTestRow> friction_test_columns[] = {
     {"pull_force_N", [](const FrictionTestRow& r) { return r.pull_force; }},
 };
 
+constexpr Column<FrictionRigRow> friction_rig_columns[] = {
+    {"velocity_mm_s", [](const FrictionRigRow& r) { return 1e3 * r.velocity; }},
+    {"normal_force_N", [](const FrictionRigRow& r) { return r.normal_force; }},
+    {"tool_temperature_C", [](const FrictionRigRow& r) { return r.tool_temperature - zero_celsius; }},
+    {"fabric_temperature_C", [](const FrictionRigRow& r) { return r.fabric_temperature - zero_celsius; }},
+    {"orientation_deg", [](const FrictionRigRow& r) { return degrees * r.orientation; }},
+    {"law_force_N", [](const FrictionRigRow& r) { return r.law_force; }},
+};
+
+/// Columns that some rows leave empty.
+struct RigColumn {
+  std::string_view name;
+  std::optional<double> (*value)(const FrictionRigRow&);
+};
+
+std::optional<double> scaled(const std::optional<double>& value, double factor, double offset = 0.0) {
+  return value ? std::optional(factor * *value + offset) : std::nullopt;
+}
+
+constexpr RigColumn more_rig_columns[] = {
+    {"peak_force_N", [](const FrictionRigRow& r) { return r.peak_force; }},
+    {"peak_displacement_mm", [](const FrictionRigRow& r) { return scaled(r.peak_displacement, 1e3); }},
+    {"steady_force_N", [](const FrictionRigRow& r) { return r.steady_force; }},
+    {"friction_coefficient", [](const FrictionRigRow& r) { return r.steady_coefficient; }},
+    {"normal_force_loss", [](const FrictionRigRow& r) { return r.normal_force_loss; }},
+    {"film_temperature_C",
+     [](const FrictionRigRow& r) { return scaled(r.film_temperature, 1.0, -zero_celsius); }},
+    {"finite_element_force_N", [](const FrictionRigRow& r) { return r.element_force; }},
+    {"measured_force_N", [](const FrictionRigRow& r) { return r.measured_force; }},
+    {"paper_force_N", [](const FrictionRigRow& r) { return r.paper_force; }},
+};
+
+constexpr Column<FrictionHistoryRow> friction_history_columns[] = {
+    {"time_s", [](const FrictionHistoryRow& r) { return r.time; }},
+    {"displacement_mm", [](const FrictionHistoryRow& r) { return 1e3 * r.displacement; }},
+    {"pull_force_N", [](const FrictionHistoryRow& r) { return r.pull_force; }},
+    {"normal_force_N", [](const FrictionHistoryRow& r) { return r.normal_force; }},
+    {"friction_coefficient", [](const FrictionHistoryRow& r) { return r.coefficient; }},
+    {"film_temperature_C", [](const FrictionHistoryRow& r) { return r.film_temperature - zero_celsius; }},
+};
+
 struct ContactRow {
   double shear_angle, pressure;
   mesoscale::ContactArea::Value area;
@@ -171,6 +212,35 @@ std::string friction_test_csv(std::span<const FrictionTestRow> rows) {
     out += optional_cell(row.paper_force, "paper_force_N", r + 1);
     out += optional_cell(error_of_model(row), "error", r + 1);
     out += optional_cell(error_of_paper(row), "paper_error", r + 1) + "\n";
+  }
+  return out;
+}
+
+std::string friction_rig_csv(std::span<const FrictionRigRow> rows) {
+  std::string out = "case,plates";
+  for (const auto& column : friction_rig_columns) out += fmt::format(",{}", column.name);
+  for (const auto& column : more_rig_columns) out += fmt::format(",{}", column.name);
+  out += '\n';
+  for (std::size_t r = 0; r < rows.size(); ++r) {
+    out += csv_text(rows[r].name) + (rows[r].curved ? ",s_curve" : ",flat");
+    for (const auto& column : friction_rig_columns)
+      out += "," + finite(column.value(rows[r]), column.name, r + 1);
+    for (const auto& column : more_rig_columns)
+      out += optional_cell(column.value(rows[r]), column.name, r + 1);
+    out += '\n';
+  }
+  return out;
+}
+
+std::string friction_history_csv(std::span<const FrictionHistoryRow> rows) {
+  std::string out = "case";
+  for (const auto& column : friction_history_columns) out += fmt::format(",{}", column.name);
+  out += '\n';
+  for (std::size_t r = 0; r < rows.size(); ++r) {
+    out += csv_text(rows[r].name);
+    for (const auto& column : friction_history_columns)
+      out += "," + finite(column.value(rows[r]), column.name, r + 1);
+    out += '\n';
   }
   return out;
 }

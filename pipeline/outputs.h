@@ -67,6 +67,51 @@ std::optional<double> error_of_paper(const FrictionTestRow& row);
 /// known).
 std::string friction_test_csv(std::span<const FrictionTestRow> rows);
 
+/// One pull of the friction rig, taken as a machine. SI units. What a pull between curved plates has no
+/// history for is empty.
+struct FrictionRigRow {
+  std::string name;
+  double velocity = 0.0;                          ///< [m/s]
+  double normal_force = 0.0;                      ///< when the plates close [N]
+  double tool_temperature = 0.0;                  ///< [K]
+  double fabric_temperature = 0.0;                ///< [K]
+  double orientation = 0.0;                       ///< [rad]
+  bool curved = false;                            ///< between S-curve plates
+  double law_force = 0.0;                         ///< steady, of the law by itself [N]
+  std::optional<double> peak_force = {};          ///< [N]
+  std::optional<double> peak_displacement = {};   ///< [m]; empty where nothing stands out of the steady force
+  std::optional<double> steady_force = {};        ///< over the last fifth of the pull [N]
+  std::optional<double> steady_coefficient = {};  ///< mean of F/(2 N) over it [-]
+  std::optional<double> normal_force_loss = {};   ///< share of the normal force lost by the end [-]
+  std::optional<double> film_temperature = {};    ///< at the end [K]
+  std::optional<double> element_force = {};       ///< through the finite elements [N]
+  std::optional<double> measured_force = {};      ///< [N]
+  std::optional<double> paper_force = {};         ///< of the paper's own model [N]
+};
+
+std::string friction_rig_csv(std::span<const FrictionRigRow> rows);
+
+/// What the load cells say at one moment of a pull. SI units.
+struct FrictionHistoryRow {
+  std::string name;               ///< of the pull
+  double time = 0.0;              ///< since the plates closed [s]
+  double displacement = 0.0;      ///< of the sample holder [m]
+  double pull_force = 0.0;        ///< [N]
+  double normal_force = 0.0;      ///< [N]
+  double coefficient = 0.0;       ///< F/(2 N) [-]
+  double film_temperature = 0.0;  ///< [K]
+};
+
+std::string friction_history_csv(std::span<const FrictionHistoryRow> rows);
+
+/// Pressure on both plates of one pull, node by node: index = i * ny + j, i along the pull.
+struct PlatePressure {
+  std::string name;
+  int nx = 0, ny = 0;
+  double spacing_x = 0.0, spacing_y = 0.0;  ///< along the pull and across [m]
+  std::vector<double> lower, upper;         ///< [Pa]
+};
+
 /// One point of the friction law. SI units.
 struct FrictionCurveRow {
   double tool_temperature = 0.0;      ///< [K]

@@ -8,6 +8,7 @@
 
 #include "pipeline/page.h"
 #include "pipeline/report_figures.h"
+#include "pipeline/rig_figures.h"
 
 namespace heddle::pipeline {
 
@@ -45,9 +46,9 @@ std::string results(const ReportInput& input) {
 }
 
 std::string header(const ReportInput& input) {
-  const std::string_view kind = input.stamping ? "Stamping report"
-                                : input.cell   ? "Unit-cell report"
-                                               : "Friction report";
+  const std::string_view kind = input.stamping                             ? "Stamping report"
+                                : input.cell && input.friction_rig.empty() ? "Unit-cell report"
+                                                                           : "Friction report";
   std::string out =
       fmt::format("<header>\n<p class=\"kind\">heddle · {}</p>\n<h1>{}</h1>\n", kind, escape(input.name));
   if (!input.description.empty()) out += fmt::format("<p class=\"lead\">{}</p>\n", escape(input.description));
@@ -169,6 +170,15 @@ std::string friction_table(const std::vector<FrictionTestRow>& rows) {
   return out + "</table></div>\n";
 }
 
+std::string film(const ReportInput& input) {
+  if (!input.film) return "";
+  return figure(
+      film_chart(*input.film),
+      "How far the resin film has gone from the fabric's temperature to the tool's, by conduction. It is "
+      "sheared where it is hottest, so friction follows the warmest line most. A stamping stroke ends at "
+      "0.4 s, a slow pull at 3 s.");
+}
+
 std::string friction_section(const ReportInput& input) {
   std::string contact, hersey, speed;
   if (input.fabric && !input.fabric->contact.log_fraction.empty()) {
@@ -189,7 +199,41 @@ std::string friction_section(const ReportInput& input) {
         figure(friction_chart(curve, FrictionAbscissa::speed),
                "Friction coefficient against slip speed at several nominal pressures and tool temperatures.");
   }
-  return contact + pair(hersey, speed) + friction_table(input.friction_test);
+  return contact + film(input) + pair(hersey, speed) + friction_table(input.friction_test);
+}
+
+std::string rig_figures(const ReportInput& input, RigParameter parameter) {
+  const auto force = rig_chart(input.friction_rig, parameter, RigQuantity::pull_force);
+  const auto mu = rig_chart(input.friction_rig, parameter, RigQuantity::coefficient);
+  if (!force || !mu) return "";
+  return pair(figure(*force, "Steady pull force, everything else at the baseline."),
+              figure(*mu, "The same as effective coefficient."));
+}
+
+std::string rig(const ReportInput& input) {
+  std::string out;
+  if (!input.friction_history.empty()) {
+    out += figure(
+        pull_chart(input.friction_history),
+        "What the load cell of the pull sees: the cable takes up the load, then the sample slides. A peak "
+        "at the start is static friction, ageing, or a gear that takes up its backlash.");
+    if (const auto normal = normal_force_chart(input.friction_history))
+      out +=
+          figure(*normal,
+                 "The cam holds the gap, not the force: what the stack gives up in thickness is load lost.");
+  }
+  for (const RigParameter parameter :
+       {RigParameter::velocity, RigParameter::normal_force, RigParameter::tool_temperature,
+        RigParameter::fabric_temperature, RigParameter::orientation})
+    out += rig_figures(input, parameter);
+  for (const PlatePressure& plate : input.plates)
+    out += pair(
+        figure(plate_picture(plate, Plate::lower),
+               "Pressure on the lower plate through the finite elements, pulled to the right: " + plate.name +
+                   ". Even means that every part of the plate measures the same friction."),
+        figure(plate_picture(plate, Plate::upper),
+               "On the upper plate. Where plates bend, tension takes from one what it gives to the other."));
+  return out;
 }
 
 std::string grounds(const ReportInput& input) {
@@ -214,6 +258,7 @@ std::string report_html(const ReportInput& input) {
   out += section("Is the answer sound?", soundness(input));
   out += section("The weave", weave(input));
   out += section("Contact and friction", friction_section(input));
+  out += section("The friction test as a machine", rig(input));
   out += section("What it rests on", grounds(input));
   return out + page_foot(
                    "Written by heddle. Numbers behind the charts: summary.json, macroscale/history.csv and "

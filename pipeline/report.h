@@ -4,6 +4,7 @@
 #include <string>
 #include <vector>
 
+#include "friction/film/film_conduction.h"
 #include "macroscale/grid_error.h"
 #include "macroscale/stamping.h"
 #include "mesoscale/cell_spec.h"
@@ -39,6 +40,11 @@ struct ReportInput {
   std::vector<FrictionTestRow> friction_test = {};
   std::vector<FrictionCurveRow> friction_curve =
       {};  ///< points of a curve in a row; a new pressure or temperature starts one
+
+  std::vector<FrictionRigRow> friction_rig = {};
+  std::vector<FrictionHistoryRow> friction_history = {};  ///< samples of a pull in a row
+  std::vector<PlatePressure> plates = {};
+  std::optional<friction::FilmConduction> film = {};  ///< where the film's temperature comes from conduction
 
   std::optional<macroscale::StampingSummary> stamping = {};
   std::vector<macroscale::HistoryRow> history = {};

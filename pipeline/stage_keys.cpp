@@ -31,6 +31,7 @@ std::vector<ChainStage> chain_of(ChainStage stage, const Case& a_case) {
   std::vector<ChainStage> chain;
   if (a_case.cell) chain.push_back(ChainStage::mesoscale);
   if (stage != ChainStage::mesoscale && a_case.friction) chain.push_back(ChainStage::friction);
+  if (stage == ChainStage::friction_rig) chain.push_back(stage);
   if (stamps(stage)) chain.push_back(ChainStage::macroscale);
   if (stage == ChainStage::grid_error) chain.push_back(stage);
   return chain;
@@ -42,6 +43,7 @@ std::vector<std::string> source_groups(ChainStage stage) {
       return {"core", "mesoscale", "stages", "build"};
     case ChainStage::friction:
       return {"core", "friction", "mesoscale", "stages", "build"};
+    case ChainStage::friction_rig:
     case ChainStage::macroscale:
     case ChainStage::grid_error:
       return {"core", "friction", "mesoscale", "macroscale", "stages", "build"};
@@ -67,6 +69,8 @@ std::string name_of(ChainStage stage) {
       return "mesoscale";
     case ChainStage::friction:
       return "friction";
+    case ChainStage::friction_rig:
+      return "friction_rig";
     case ChainStage::macroscale:
       return "macroscale";
     case ChainStage::grid_error:
@@ -91,8 +95,14 @@ bool reads(ChainStage stage, const Key& key) {
     case Stage::cell:
       return stage == ChainStage::mesoscale;
     case Stage::friction:
-    case Stage::friction_test:
       return stage == ChainStage::friction;
+    case Stage::friction_test: {  // what only the machine reads moves nothing that the stamping takes from
+                                  // the law
+      const bool of_machine = key.path.starts_with("friction_test.rig.") &&
+                              key.path != "friction_test.rig.pull_length" &&
+                              key.path != "friction_test.rig.dwell";
+      return stage == (of_machine ? ChainStage::friction_rig : ChainStage::friction);
+    }
     case Stage::stamping:
       return stage == ChainStage::macroscale;
     case Stage::grid_error:
@@ -127,7 +137,8 @@ StageInputs inputs_of(ChainStage stage, const Case& a_case) {
     if (std::find(groups.begin(), groups.end(), name) != groups.end())
       result.inputs.push_back({"sources." + name, hash});
   result.inputs.push_back({"machine.processor", processor_name()});
-  if (stamps(stage)) result.inputs.push_back({"machine.blas", blas_name()});
+  if (stamps(stage) || stage == ChainStage::friction_rig)
+    result.inputs.push_back({"machine.blas", blas_name()});
   return result;
 }
 
@@ -154,6 +165,7 @@ std::string case_hash(const Case& a_case) {
   std::string text;
   if (a_case.cell) text += inputs_of(ChainStage::mesoscale, a_case).text();
   if (a_case.friction) text += inputs_of(ChainStage::friction, a_case).text();
+  if (a_case.friction_machine) text += inputs_of(ChainStage::friction_rig, a_case).text();
   if (a_case.stamping) text += inputs_of(ChainStage::macroscale, a_case).text();
   if (a_case.grid_error) text += inputs_of(ChainStage::grid_error, a_case).text();
   return sha256(text);

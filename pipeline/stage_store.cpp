@@ -246,4 +246,141 @@ FrictionStage read_friction_stage(const Hdf5Reader& file) {
   return stage;
 }
 
+namespace {
+
+static_assert(sizeof(FrictionRigRow) ==
+                  sizeof(std::string) + 7 * sizeof(double) + 9 * sizeof(std::optional<double>),
+              "a new member: keep it");
+template <class Row>
+auto rig_members(Row& r) {
+  return std::tie(r.velocity, r.normal_force, r.tool_temperature, r.fabric_temperature, r.orientation,
+                  r.law_force);
+}
+template <class Row>
+auto rig_optionals(Row& r) {
+  return std::tie(r.peak_force, r.peak_displacement, r.steady_force, r.steady_coefficient,
+                  r.normal_force_loss, r.film_temperature, r.element_force, r.measured_force, r.paper_force);
+}
+
+static_assert(sizeof(FrictionHistoryRow) == sizeof(std::string) + 6 * sizeof(double),
+              "a new member: keep it");
+template <class Row>
+auto history_members(Row& r) {
+  return std::tie(r.time, r.displacement, r.pull_force, r.normal_force, r.coefficient, r.film_temperature);
+}
+
+constexpr std::size_t rig_optional_count = 9;
+
+void write_rig_rows(Hdf5Writer& file, const std::vector<FrictionRigRow>& rows) {
+  std::vector<std::string> names;
+  std::vector<double> values, optionals;
+  std::vector<int> curved;
+  for (const FrictionRigRow& row : rows) {
+    names.push_back(row.name);
+    curved.push_back(row.curved ? 1 : 0);
+    append(values, values_of(rig_members(row)));
+    std::apply([&](const auto&... value) { (optionals.push_back(or_nothing(value)), ...); },
+               rig_optionals(row));
+  }
+  write_texts(file, "/rig/names", names);
+  file.write("/rig/curved", curved);
+  file.write("/rig/values", values);
+  file.write("/rig/optionals", optionals);
+}
+
+std::vector<FrictionRigRow> read_rig_rows(const Hdf5Reader& file) {
+  const auto names = read_texts(file, "/rig/names");
+  const auto curved = file.integers("/rig/curved");
+  const auto values = file.doubles("/rig/values"), optionals = file.doubles("/rig/optionals");
+  std::vector<FrictionRigRow> rows(names.size());
+  if (curved.size() != rows.size() || optionals.size() != rig_optional_count * rows.size())
+    throw Hdf5Error("/rig has parts of different lengths");
+  for (std::size_t k = 0; k < rows.size(); ++k) {
+    rows[k].name = names[k];
+    rows[k].curved = curved[k] != 0;
+    fill(rig_members(rows[k]), values, k, "/rig/values");
+    std::size_t at = rig_optional_count * k;
+    std::apply([&](auto&... value) { ((value = from_nothing(optionals[at++])), ...); },
+               rig_optionals(rows[k]));
+  }
+  return rows;
+}
+
+/// A pull's name stands once, before its samples.
+void write_history(Hdf5Writer& file, const std::vector<FrictionHistoryRow>& history) {
+  std::vector<std::string> names;
+  std::vector<int> counts;
+  std::vector<double> values;
+  for (const FrictionHistoryRow& row : history) {
+    if (names.empty() || names.back() != row.name) {
+      names.push_back(row.name);
+      counts.push_back(0);
+    }
+    ++counts.back();
+    append(values, values_of(history_members(row)));
+  }
+  write_texts(file, "/history/names", names);
+  file.write("/history/counts", counts);
+  file.write("/history/values", values);
+}
+
+std::vector<FrictionHistoryRow> read_history(const Hdf5Reader& file) {
+  const auto names = read_texts(file, "/history/names");
+  const auto counts = file.integers("/history/counts");
+  const auto values = file.doubles("/history/values");
+  if (counts.size() != names.size()) throw Hdf5Error("/history has parts of different lengths");
+  std::vector<FrictionHistoryRow> history;
+  for (std::size_t k = 0; k < names.size(); ++k)
+    for (int i = 0; i < counts[k]; ++i) {
+      FrictionHistoryRow row;
+      row.name = names[k];
+      fill(history_members(row), values, history.size(), "/history/values");
+      history.push_back(std::move(row));
+    }
+  return history;
+}
+
+}  // namespace
+
+std::string bytes_of(const FrictionRigStage& stage, const std::string& key) {
+  Hdf5Writer file;
+  begin(file, key, "friction_rig");
+  write_rig_rows(file, stage.rows);
+  write_history(file, stage.history);
+  file.write("/plates/count", static_cast<int>(stage.plates.size()));
+  for (std::size_t k = 0; k < stage.plates.size(); ++k) {
+    const PlatePressure& plate = stage.plates[k];
+    const std::string group = fmt::format("/plates/{:06d}", k);
+    file.write(group + "/name", plate.name);
+    file.write(group + "/count", std::vector<int>{plate.nx, plate.ny});
+    file.write(group + "/spacing", std::vector<double>{plate.spacing_x, plate.spacing_y});
+    file.write(group + "/lower", plate.lower);
+    file.write(group + "/upper", plate.upper);
+  }
+  write_texts(file, "/notes", stage.notes);
+  return file.finish();
+}
+
+FrictionRigStage read_friction_rig_stage(const Hdf5Reader& file) {
+  demand_kind(file, "friction_rig");
+  FrictionRigStage stage;
+  stage.rows = read_rig_rows(file);
+  stage.history = read_history(file);
+  stage.plates.resize(static_cast<std::size_t>(file.integer("/plates/count")));
+  for (std::size_t k = 0; k < stage.plates.size(); ++k) {
+    PlatePressure& plate = stage.plates[k];
+    const std::string group = fmt::format("/plates/{:06d}", k);
+    plate.name = file.text(group + "/name");
+    const auto count = file.integers(group + "/count");
+    if (count.size() != 2) throw Hdf5Error(group + "/count has the wrong length");
+    plate.nx = count[0];
+    plate.ny = count[1];
+    fill(std::tie(plate.spacing_x, plate.spacing_y), file.doubles(group + "/spacing"), 0, group + "/spacing");
+    plate.lower = file.doubles(group + "/lower");
+    plate.upper = file.doubles(group + "/upper");
+  }
+  stage.notes = read_texts(file, "/notes");
+  return stage;
+}
+
 }  // namespace heddle::pipeline

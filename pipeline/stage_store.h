@@ -4,6 +4,7 @@
 
 #include "core/hdf5_file.h"
 #include "mesoscale/cell_spec.h"
+#include "pipeline/friction_rig_stage.h"
 #include "pipeline/stages.h"
 
 /// Results of the stages before the stamping as sealed HDF5 files, for the cache. Every number comes back bit
@@ -26,5 +27,9 @@ CellStage read_cell_stage(const Hdf5Reader& file);
 std::string bytes_of(const FrictionStage& stage, const std::string& key);
 /// @throws Hdf5Error  if something is missing
 FrictionStage read_friction_stage(const Hdf5Reader& file);
+
+std::string bytes_of(const FrictionRigStage& stage, const std::string& key);
+/// @throws Hdf5Error  if something is missing
+FrictionRigStage read_friction_rig_stage(const Hdf5Reader& file);
 
 }  // namespace heddle::pipeline

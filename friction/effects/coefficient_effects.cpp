@@ -1,5 +1,6 @@
 #include "friction/effects/coefficient_effects.h"
 
+#include "friction/film/film_conduction.h"
 #include "friction/hersey.h"
 
 namespace heddle::friction {
@@ -26,8 +27,13 @@ Sensitive factor_of(const DwellAgeing& effect, const Inputs& inputs) {
 }
 
 Sensitive factor_of(const Solidification& effect, const Inputs& inputs) {
-  const Sensitive interface =
-      effect.tool_weight * inputs.tool_temperature + (1.0 - effect.tool_weight) * inputs.fabric_temperature;
+  Sensitive interface;
+  if (inputs.conduction)
+    interface = inputs.fabric_temperature + face_share(*inputs.conduction, inputs.dwell) *
+                                                (inputs.tool_temperature - inputs.fabric_temperature);
+  else
+    interface =
+        effect.tool_weight * inputs.tool_temperature + (1.0 - effect.tool_weight) * inputs.fabric_temperature;
   const Sensitive solid = 1.0 / (1.0 + exp((interface - effect.onset) / effect.width));
   return 1.0 + effect.amplitude * (1.0 - exp(inputs.dwell / -effect.time)) * solid;
 }

@@ -46,7 +46,8 @@ struct DwellAgeing {
 };
 
 /// Effect F11: mu *= 1 + A (1 - exp(-t/tau)) / (1 + exp((T_i - T_c)/w)), at the interface temperature
-/// T_i = b T_tool + (1 - b) T_fabric of two half-spaces.
+/// T_i = b T_tool + (1 - b) T_fabric of two half-spaces. With a film conduction T_i is the temperature of the
+/// film's face towards the tool, and b is not used.
 struct Solidification {
   double amplitude = 0.0;      ///< A [-], > -1; 0 = off
   double onset = 390.15;       ///< T_c [K], > 0

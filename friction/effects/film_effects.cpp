@@ -2,6 +2,7 @@
 
 #include <numbers>
 
+#include "friction/film/film_conduction.h"
 #include "friction/hersey.h"
 
 namespace heddle::friction {
@@ -17,10 +18,46 @@ Sensitive settled_share(const Sensitive& time_over_settling) {
   return tau.mapped((1.0 / root_pi - integral) / x, (1.0 - gauss) / (root_pi * std::sqrt(tau.value)));
 }
 
-Sensitive temperature_with(const ToolTemperatureFilm& effect, const Inputs& inputs) {
+namespace {
+
+/// The temperature of an even film as thin as one with these temperatures through it.
+Sensitive as_thin_as(const std::array<Sensitive, film_points>& through, const TemperatureLaw& law,
+                     const PowerLawFilm& film) {
+  Sensitive mean, thinness;  // mean of T, and of a^(-1/n)
+  for (std::size_t i = 0; i < film_points; ++i) {
+    const TemperatureShift a = temperature_shift(law, film, through[i].value);
+    mean = mean + film_point_weight[i] * through[i];
+    thinness = thinness + film_point_weight[i] * exp(through[i].mapped(a.log, a.slope) / -film.index);
+  }
+  // The inverse of a monotone shift: Newton from the mean.
+  const double log_shift = -film.index * std::log(thinness.value);
+  double temperature = mean.value;
+  for (int k = 0; k < 50; ++k) {
+    const TemperatureShift a = temperature_shift(law, film, temperature);
+    if (a.slope == 0.0) return mean;  // a resin that heat does not thin
+    const double step = (log_shift - a.log) / a.slope;
+    temperature += step;
+    if (std::abs(step) < 1e-12 * temperature) break;
+  }
+  const double slope = temperature_shift(law, film, temperature).slope;
+  return thinness.mapped(temperature, -film.index / (thinness.value * slope));
+}
+
+}  // namespace
+
+Sensitive temperature_with(const ToolTemperatureFilm& effect, const TemperatureLaw& law,
+                           const PowerLawFilm& film, const Inputs& inputs) {
+  const Sensitive difference = inputs.tool_temperature - inputs.fabric_temperature;
+  if (inputs.conduction) {
+    std::array<Sensitive, film_points> through;
+    for (std::size_t i = 0; i < film_points; ++i)
+      through[i] = inputs.fabric_temperature +
+                   effect.weight * point_share(*inputs.conduction, i, inputs.dwell) * difference;
+    return as_thin_as(through, law, film);
+  }
   Sensitive share = effect.weight;
   if (effect.settling > 0.0) share = share * settled_share(inputs.dwell / effect.settling);
-  return inputs.fabric_temperature + share * (inputs.tool_temperature - inputs.fabric_temperature);
+  return inputs.fabric_temperature + share * difference;
 }
 
 Sensitive thickness_with(const FilmSqueezeOut& effect, double thickness, const Inputs& inputs) {
@@ -38,9 +75,18 @@ Sensitive viscosity_with(const ViscosityPlateau& effect, const Sensitive& viscos
   return viscosity / (1.0 + effect.fluidity * viscosity / exp(log_shift));
 }
 
-Sensitive viscosity_with(const ShearHeating& effect, const Sensitive& viscosity, const Sensitive& softening,
+Sensitive heating_strength(const ShearHeating& effect, const Inputs& inputs, double rest_speed) {
+  if (!inputs.conduction) return effect.amplitude / (8.0 * effect.conductivity);
+  // The heat that counts is the last few h^2/alpha's; over those a point slides at about its present speed.
+  const Sensitive sheared =
+      inputs.slip / sqrt(inputs.slip_speed * inputs.slip_speed + rest_speed * rest_speed);
+  return 12.0 * effect.amplitude / (8.0 * inputs.conduction->spec.film_conductivity) *
+         heating_rise(*inputs.conduction, sheared);
+}
+
+Sensitive viscosity_with(const Sensitive& strength, const Sensitive& viscosity, const Sensitive& softening,
                          const Sensitive& speed) {
-  const Sensitive x = effect.amplitude / (8.0 * effect.conductivity) * softening * viscosity * speed * speed;
+  const Sensitive x = strength * softening * viscosity * speed * speed;
   const double root = std::sqrt(x.value * (1.0 + x.value));
   // f = asinh(sqrt x)/sqrt(x (1 + x)) is smooth at 0; its series there, where the quotient is 0/0.
   const double factor = x.value < 1e-4

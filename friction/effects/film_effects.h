@@ -11,7 +11,11 @@ namespace heddle::friction {
 /// Effect F1: the film is sheared between fabric and tool temperature,
 ///     T_film = T_fabric + w S(t/t_s) (T_tool - T_fabric).
 /// S is the mean over the film of its warming from a tool touched at t = 0 (half-space: mean of erfc), so a
-/// slow pull sees w and a fast stroke less; t_s = h^2/alpha. t_s = 0: settled at once.
+/// slow pull sees w and a fast stroke less; t_s = h^2/alpha. t_s = 0: settled at once. With a film conduction
+/// w S is w times the share of the tool at each point through the film, which holds the effusivities of tool
+/// and ply (w = 1 is then the whole of it; t_s is not used), and T_film is the temperature at which an even
+/// film would be as thin: one stress goes through the film, so it is sheared where it is hottest,
+///     a(T_film)^(-1/n) = mean of a(T_i)^(-1/n).
 struct ToolTemperatureFilm {
   double weight = 0.0;    ///< w [-], 0..1; 0 = off
   double settling = 0.0;  ///< t_s [s], >= 0
@@ -30,7 +34,9 @@ struct FilmSqueezeOut {
 
 /// Effect F12: the film heats itself, eta *= asinh(sqrt x)/sqrt(x (1 + x)) with x = A Na/8 and the Nahme
 /// number Na = beta eta U^2/k, beta = -d ln a/dT (plane Couette flow between walls at the film's temperature;
-/// Nahme 1940). A = 1: both walls held; 4: one of them adiabatic.
+/// Nahme 1940). A = 1: both walls held; 4: one of them adiabatic. With a film conduction k is the melt's
+/// there and A is multiplied by 12 times its heating rise (1/12 between held walls) after the time s/U for
+/// which the film has been sheared, so that A = 1 is the whole of it.
 struct ShearHeating {
   double amplitude = 0.0;      ///< A [-], >= 0; 0 = off
   double conductivity = 0.19;  ///< k [W/(m K)], > 0
@@ -46,13 +52,19 @@ struct ViscosityPlateau {
 /// temperature of the surface it touches. 0 at first touch, 1 when settled.
 Sensitive settled_share(const Sensitive& time_over_settling);
 
-Sensitive temperature_with(const ToolTemperatureFilm& effect, const Inputs& inputs);
+/// @param film  whose index n the points share
+Sensitive temperature_with(const ToolTemperatureFilm& effect, const TemperatureLaw& law,
+                           const PowerLawFilm& film, const Inputs& inputs);
 Sensitive thickness_with(const FilmSqueezeOut& effect, double thickness, const Inputs& inputs);
 Sensitive area_with(const PressureDependentArea& effect, const Inputs& inputs);
 Sensitive viscosity_with(const ViscosityPlateau& effect, const Sensitive& viscosity,
                          const Sensitive& log_shift);
-Sensitive viscosity_with(const ShearHeating& effect, const Sensitive& viscosity, const Sensitive& softening,
+/// @param strength  A/(8 k) [m K/W]
+Sensitive viscosity_with(const Sensitive& strength, const Sensitive& viscosity, const Sensitive& softening,
                          const Sensitive& speed);
+/// A/(8 k) of the contact, with the film conduction where there is one.
+/// @param rest_speed  at which a film at rest counts as sheared, h g0 [m/s]
+Sensitive heating_strength(const ShearHeating& effect, const Inputs& inputs, double rest_speed);
 
 template <>
 struct About<ToolTemperatureFilm> {

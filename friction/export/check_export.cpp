@@ -42,8 +42,8 @@ Problems check_export(const Model& model) {
   refuse(effects.dwell_ageing);
   refuse(effects.solidification);
   refuse(effects.wear);
-  if (problems.empty() && has_memory(model))
-    problems.push_back(memory_problem("friction", id_of(model.law), "Switch off what remembers."));
+  if (problems.empty() && has_memory(model))  // the film's heat, on which an effect draws
+    problems.push_back(memory_problem("friction.film_temperature", "conduction", "Write closed_form."));
   if (is_on(effects.orientation))
     problems.push_back(
         {.id = "export.direction"_rule,

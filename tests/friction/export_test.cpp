@@ -245,6 +245,12 @@ TEST_CASE("laws with a memory or a direction are refused with the reason, all at
   }
   CHECK(ids == std::vector<std::string>{"export.memory", "export.memory", "export.direction"});
   CHECK(keys == std::vector<std::string>{"friction.law", "effects.wear", "effects.orientation"});
+  Model heated = exported(HerseyPower{.scale = 0.325, .exponent = 0.136}).model;
+  heated.effects.tool_temperature_film = ToolTemperatureFilm{.weight = 0.9};
+  CHECK(check_export(heated).empty());
+  heated.conduction = film_conduction({}, heated.film.thickness);  // takes its time
+  REQUIRE(check_export(heated).size() == 1);
+  CHECK(check_export(heated)[0].key == "friction.film_temperature");
   CHECK_THROWS_AS(fric_coef_fortran({.name = "x", .model = model}), InputError);
   CHECK_THROWS_AS(law_table({.name = "x", .model = model}), InputError);
   // Every effect is either in the routine or refused: has_memory and the refusals agree.

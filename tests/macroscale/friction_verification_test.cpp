@@ -22,7 +22,9 @@ TEST_CASE("V5: the friction test through the finite elements gives 2 mu N with C
   CAPTURE(load);
   heddle::friction::Model model;
   model.law = heddle::friction::Coulomb{0.3};
-  const auto result = run_pull_out({.normal_force = load}, make_fabric({.contact_stiffness = 5e9}), model);
+  PullOutSpec spec;
+  spec.normal_force = load;
+  const auto result = run_pull_out(spec, make_fabric({.contact_stiffness = 5e9}), model);
   REQUIRE(result.completed);
   CHECK(result.steady_force == Approx(2.0 * 0.3 * load).epsilon(1e-3));
   CHECK(result.pressure_spread < 0.01);  // V2: uniform pressure on a plate

@@ -2,10 +2,16 @@
 
 #include <catch2/catch.hpp>
 #include <chrono>
+#include <cmath>
 #include <cstdio>
+#include <numbers>
 
+#include "macroscale/tool_band.h"
 #include "macroscale/tool_file.h"
+#include "macroscale/tool_loading.h"
+#include "macroscale/tool_set.h"
 #include "tests/macroscale/sample_meshes.h"
+#include "tests/macroscale/tool_meshes.h"
 
 using namespace heddle;
 using namespace heddle::macroscale;
@@ -211,4 +217,46 @@ TEST_CASE("a tool of 200 thousand triangles loads", "[macroscale][tool_file][slo
     CHECK(loaded.mesh.triangles.size() == 200000);
     CHECK(seconds_since(start) < 10.0);  // the target is 3 s of an idle core
   }
+}
+
+TEST_CASE("a die drawn as a sheet is the die that it bounds, whichever way its normals were drawn",
+          "[macroscale][tool_file]") {
+  const Folder folder;
+  Meridian profile{{0.2, 0.0}};  // from the rim inwards, over the fillet and down
+  add_line(profile, {0.0956, 0.0}, 29);
+  add_arc(profile, {0.092, -0.02}, 0.02, 0.5 * std::numbers::pi, std::numbers::pi, 24);
+  add_line(profile, {0.072, -0.1}, 20);
+  const TriangleMesh drawn = revolved(profile, 180, false);
+  StampingSpec spec;
+  spec.blank.size = {0.32, 0.32};
+  spec.process.stroke = 0.07;
+  spec.process.steps = 100;
+  for (const TriangleMesh& mesh : {drawn, inside_out(drawn)}) {
+    ToolFileSpec die;
+    die.source = tool(folder.write("die.obj", obj(mesh)));
+    die.source.topology = TopologyRule::open_allowed;
+    die.source.repair = true;
+    spec.die.file = die;
+    const StampingSpec loaded = with_tools_loaded(spec, 1.5e-3);
+    const ToolBand& band = *loaded.die.file->loaded->band;
+    const Shape ring = RingShape{0.0, 0.072, 0.02, true};
+    for (double r = 0.07; r < 0.16; r += 0.9e-3)
+      for (double z : {-0.05, -0.021, -0.011, -1e-3, 0.0, 1e-3}) {
+        const Eigen::Vector3d x(r * std::cos(r), r * std::sin(r), z);
+        const double exact = distance(ring, x).distance;
+        if (std::abs(exact) > 1e-3) continue;
+        REQUIRE(evaluate(band, x).distance == Approx(exact).margin(30e-6));
+      }
+  }
+  int refused = 0;
+  for (const TriangleMesh& mesh : {drawn, inside_out(drawn)}) {
+    spec.die.file->source.file = folder.write("die.obj", obj(mesh));
+    spec.die.file->source.repair = false;
+    spec.die.file->loaded.reset();
+    const Problems problems = refusal([&] { with_tools_loaded(spec, 1.5e-3); });
+    if (problems.empty()) continue;
+    ++refused;
+    CHECK(names(problems, "tools.die.sheet.side", {"normals up", "`tools.die.repair: on`"}));
+  }
+  CHECK(refused == 1);
 }

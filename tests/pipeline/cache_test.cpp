@@ -183,8 +183,8 @@ TEST_CASE("a cache that cannot be written to costs a line in the log and no run"
 TEST_CASE("every key of the configuration is in the key of a stage, but for those that change no result",
           "[pipeline][cache]") {
   const auto& idle = pipeline::keys_without_effect();
-  const std::vector<ChainStage> stages{ChainStage::mesoscale, ChainStage::friction, ChainStage::macroscale,
-                                       ChainStage::grid_error};
+  const std::vector<ChainStage> stages{ChainStage::mesoscale, ChainStage::friction, ChainStage::friction_rig,
+                                       ChainStage::macroscale, ChainStage::grid_error};
   for (const pipeline::Key& key : pipeline::schema()) {
     INFO(key.path);
     const bool read =
@@ -239,6 +239,29 @@ TEST_CASE("the key of a stage moves with what it reads and with nothing else", "
       continue;
     INFO(key.path << "=" << other);
     CHECK(moved(key.path + "=" + other).back() == 'X');
+  }
+}
+
+TEST_CASE("what only the rig reads moves the key of the rig and not that of the law", "[pipeline][cache]") {
+  const fs::path file = fs::path(HEDDLE_SOURCE_DIR) / "configs/friction_test.yaml";
+  const auto keys = [&](const std::vector<std::string>& settings) {
+    const pipeline::Case a_case = pipeline::read_case(file, settings);
+    return std::array{pipeline::inputs_of(ChainStage::friction, a_case).key(),
+                      pipeline::inputs_of(ChainStage::friction_rig, a_case).key()};
+  };
+  const auto base = keys({});
+  for (const char* setting : {"drive.stiffness=2e6 N/m", "sample.slack=1 mm", "normal=cam",
+                              "sampling_rate=50 1/s", "finite_elements=off", "bend.angle=10 deg"}) {
+    INFO(setting);
+    const auto now = keys({std::string("friction_test.rig.") + setting});
+    CHECK(now[0] == base[0]);
+    CHECK(now[1] != base[1]);
+  }
+  // The law's own test reads these as well, where it has a memory.
+  for (const char* setting : {"pull_length=40 mm", "dwell=1 s"}) {
+    const auto now = keys({std::string("friction_test.rig.") + setting});
+    CHECK(now[0] != base[0]);
+    CHECK(now[1] != base[1]);
   }
 }
 

@@ -181,8 +181,54 @@ TEST_CASE("every default of the schema obeys its own rule", "[pipeline][config]"
         if (other.path.starts_with(block) && other.presence == pipeline::Presence::required)
           assignments.insert(assignments.begin(), other.path + "=0 " + other.unit);
     }
+    if (key.path.starts_with("friction_test."))
+      assignments.push_back("friction_test.data=" + (configs / "data/friction_table4.csv").string());
     CHECK(format(problems_of(small_stamping, assignments)) == "");
   }
+}
+
+TEST_CASE(
+    "the rig stands as its structs say until a key says otherwise, and runs only where its block is given",
+    "[pipeline][config]") {
+  const std::string data = "friction_test.data=" + (configs / "data/friction_table4.csv").string();
+  CHECK_FALSE(read_case_text(small_stamping, "x.yaml", "", {data}).friction_machine);
+  const Case read = read_case_text(small_stamping, "x.yaml", "", {data, "friction_test.rig.normal=cam"});
+  REQUIRE(read.friction_machine);
+  const friction::Machine &m = read.friction_machine->machine, defaults;
+  for (const auto& field : friction::About<friction::Drive>::fields)
+    CHECK(m.drive.*(field.member) == defaults.drive.*(field.member));
+  for (const auto& field : friction::About<friction::Sample>::fields)
+    CHECK(m.sample.*(field.member) == defaults.sample.*(field.member));
+  REQUIRE(m.cam);
+  for (const auto& field : friction::About<friction::CamGap>::fields)
+    CHECK((*m.cam).*(field.member) == friction::CamGap{}.*(field.member));
+  CHECK(m.sampling_rate == defaults.sampling_rate);
+  CHECK(read.friction_machine->bend.radius == friction::SCurve{}.radius);
+  CHECK(read.friction_machine->bend.angle == Approx(friction::SCurve{}.angle));
+  CHECK(read.friction->rig.pull_length == friction::FrictionRig{}.pull_length);
+  CHECK(read.friction->rig.dwell_before == friction::FrictionRig{}.dwell_before);
+
+  const Case other = read_case_text(small_stamping, "x.yaml", "",
+                                    {data, "friction_test.rig.drive.backlash=2 mm",
+                                     "friction_test.rig.dwell=4 s", "friction_test.rig.sample.slack=3 mm"});
+  CHECK(other.friction_machine->machine.drive.backlash == 2e-3);
+  CHECK(other.friction_machine->machine.sample.slack == 3e-3);
+  CHECK(other.friction->rig.dwell_before == 4.0);
+  CHECK_FALSE(other.friction_machine->machine.cam);
+}
+
+TEST_CASE("a film conduction that no effect draws on is noted", "[pipeline][config]") {
+  const auto notes = [](const std::vector<std::string>& assignments) {
+    std::string all;
+    for (const std::string& note : read_case_text(small_stamping, "x.yaml", "", assignments).notes)
+      all += note + "\n";
+    return all;
+  };
+  const std::string idle = "changes nothing by itself";
+  CHECK_THAT(notes({"friction.film_temperature=conduction"}), Catch::Contains(idle));
+  CHECK_THAT(notes({}), !Catch::Contains(idle));
+  CHECK_THAT(notes({"friction.film_temperature=conduction", "effects.solidification={amplitude: 0.5}"}),
+             !Catch::Contains(idle));
 }
 
 TEST_CASE("a value set on the command line counts as if it stood in the file", "[pipeline][config]") {

@@ -6,6 +6,7 @@
 #include <filesystem>
 #include <string>
 #include <type_traits>
+#include <vector>
 
 #include "macroscale/stamping.h"
 #include "pipeline/case.h"
@@ -34,9 +35,9 @@ struct Run {
 };
 
 /// The keys `effects: {id: ...}` of a file, through the solver, to the bytes of history.csv.
-Run run(const std::string& effects) {
+Run run(const std::string& effects, const std::vector<std::string>& assignments = {}) {
   const pipeline::Case a_case =
-      pipeline::read_case_text(stamping + effects, "small.yaml", std::filesystem::path());
+      pipeline::read_case_text(stamping + effects, "small.yaml", std::filesystem::path(), assignments);
   // Half the face touches, and more under load: effects on the area need an area to act on.
   mesoscale::FabricProperties fabric = test::make_fabric({.rate_consistency = 5.0});
   fabric.contact.log_fraction = CurveFamily({0.0}, {Curve({0.0, 20.0}, {-2.0, -0.2})});
@@ -80,4 +81,25 @@ TEST_CASE("every friction effect is off at its off value to the byte, and linear
     CHECK(twice == Approx(2.0 * once).epsilon(0.01));
   });
   CHECK(at == usual.size());
+}
+
+TEST_CASE("effects that draw on the film's conduction are off to the byte and linear when tiny as well",
+          "[pipeline][effect]") {
+  const std::vector<std::string> conduction{"friction.film_temperature=conduction"};
+  const Run without = run("");
+  CHECK((run("", conduction).history == without.history));
+  const auto check_effect = [&]<class Effect>(const Effect&) {
+    CAPTURE(friction::About<Effect>::id);
+    CHECK((run(effect_keys<Effect>(0.0), conduction).history == without.history));
+    const Run one = run(effect_keys<Effect>(1e-6), conduction),
+              two = run(effect_keys<Effect>(2e-6), conduction);
+    const double once = one.force - without.force, twice = two.force - without.force;
+    CAPTURE(once, twice);
+    CHECK(once != 0.0);
+    CHECK(twice == Approx(2.0 * once).epsilon(0.01));
+    CHECK((one.history != run(effect_keys<Effect>(1e-6)).history));  // and it is not the closed form
+  };
+  check_effect(friction::ToolTemperatureFilm{});
+  check_effect(friction::Solidification{});
+  check_effect(friction::ShearHeating{});
 }

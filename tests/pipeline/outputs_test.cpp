@@ -150,6 +150,26 @@ TEST_CASE("friction tests without a measurement leave its cells empty", "[output
   CHECK(std::stod(split(lines[1], ',')[11]) == Approx(804.0 / 843.0 - 1.0));
 }
 
+TEST_CASE("what a pull of the rig has not got leaves its cells empty", "[outputs]") {
+  const auto rows = sample::friction_rig();
+  const std::vector<std::string> lines = split(friction_rig_csv(rows), '\n');
+  CHECK(lines[0] ==
+        "case,plates,velocity_mm_s,normal_force_N,tool_temperature_C,fabric_temperature_C,orientation_deg,"
+        "law_force_N,"
+        "peak_force_N,peak_displacement_mm,steady_force_N,friction_coefficient,normal_force_loss,film_"
+        "temperature_C,"
+        "finite_element_force_N,measured_force_N,paper_force_N");
+  CHECK_THAT(lines[1],
+             Catch::StartsWith("speed 0,flat,16.67,1500,85,180,0,838.5,,,") && Catch::EndsWith(",843,"));
+  CHECK_THAT(lines.at(rows.size()), Catch::StartsWith("S-curve plates,s_curve,"));
+  CHECK(split(lines[1], ',')[10] == shortest(0.95 * 838.5));
+  const auto history = split(friction_history_csv(sample::friction_history()), '\n');
+  CHECK(history[0] ==
+        "case,time_s,displacement_mm,pull_force_N,normal_force_N,friction_coefficient,film_temperature_C");
+  CHECK_THAT(history[1], Catch::StartsWith("speed 0,0,0,0,1500,0,"));
+  REQUIRE(history.size() >= 52);
+}
+
 TEST_CASE("the contact table holds the law at each pressure and angle", "[outputs]") {
   const auto contact = sample::fabric().contact;
   const std::vector<double> pressures{1e3, 1e4}, angles{0.0, 0.3};

@@ -88,6 +88,29 @@ TEST_CASE("a full report holds every picture and table", "[report]") {
   }
 }
 
+TEST_CASE("the friction test as a machine shows its pulls, its trends and its plates", "[report]") {
+  ReportInput input;
+  input.name = "rig";
+  input.friction_rig = sample::friction_rig();
+  input.friction_history = sample::friction_history();
+  input.plates = {
+      {"flat", 3, 2, 0.05, 0.1, {1e5, 1e5, 1.5e5, 1.5e5, 2e5, 2e5}, {1e5, 1e5, 1e5, 1e5, 1e5, 1e5}}};
+  const std::string html = report_html(input);
+  CHECK(first_fault_of_nesting(html) == "");
+  CHECK_THAT(html, Contains("Friction report") && Contains("The friction test as a machine"));
+  // Pull and normal force; force and mu against speed, which alone is varied; both plates.
+  CHECK(count(html, "<svg") == 6);
+  // Measured pulls are dots and not lines: two, in both charts; the finite elements six.
+  CHECK(count(html, "class=\"dot s1\"") == 4);
+  CHECK(count(html, "class=\"dot s2\"") == 12);
+  CHECK(count(html, "paper&#39;s model") + count(html, "paper's model") == 0);  // none was given
+  input.film = friction::film_conduction({}, 0.07e-3);
+  CHECK(count(report_html(input), "<svg") == 7);
+  // Without a loss of load there is nothing to show of it.
+  for (auto& row : input.friction_history) row.normal_force = 1500.0;
+  CHECK(count(report_html(input), "<svg") == 6);
+}
+
 TEST_CASE("sections without data are left out of the report", "[report]") {
   ReportInput bare;
   bare.name = "bare";

@@ -84,10 +84,53 @@ TEST_CASE("the shipped stamping runs small, writes what it promises, and twice t
   CHECK((pipeline::read_file(scratch / "c" / "macroscale/history.csv") == a.at("macroscale/history.csv")));
 }
 
+namespace {
+
+std::vector<std::vector<std::string>> cells_of(const fs::path& file) {
+  std::vector<std::vector<std::string>> rows;
+  std::istringstream lines(pipeline::read_file(file));
+  for (std::string line; std::getline(lines, line);) {
+    rows.emplace_back();
+    std::istringstream cells(line);
+    for (std::string cell; std::getline(cells, cell, ',');) rows.back().push_back(cell);
+  }
+  return rows;
+}
+
+/// Histories stand beside the test, and their steady forces are those of the law.
+void check_rig(const fs::path& folder) {
+  const auto test = cells_of(folder / "friction/friction_test.csv"),
+             rig = cells_of(folder / "friction/friction_rig.csv"),
+             history = cells_of(folder / "friction/friction_history.csv");
+  CHECK(history.front() == std::vector<std::string>{"case", "time_s", "displacement_mm", "pull_force_N",
+                                                    "normal_force_N", "friction_coefficient",
+                                                    "film_temperature_C"});
+  REQUIRE(rig.size() == test.size() + 1);  // and the S-curve plates
+  CHECK(rig.back()[0] == "S-curve plates");
+  CHECK(rig.back()[1] == "s_curve");
+  for (std::size_t k = 1; k < test.size(); ++k) {
+    CAPTURE(rig[k][0]);
+    CHECK(std::stod(rig[k][7]) == std::stod(test[k][7]));                         // law
+    CHECK(std::stod(rig[k][10]) == Approx(std::stod(test[k][7])).epsilon(1e-3));  // machine
+  }
+  CHECK(std::stod(rig.back()[7]) == Approx(std::stod(rig[5][7])).epsilon(0.02));  // "relatively no effect"
+  // At rest under load first, then up to the pull's length.
+  CHECK(history[1][0] == "baseline");
+  CHECK(std::stod(history[5][1]) > 0.0);
+  CHECK(std::stod(history[5][3]) == 0.0);
+  CHECK(std::stod(history.back()[2]) == Approx(50.0).epsilon(0.03));
+}
+
+}  // namespace
+
 TEST_CASE("the shipped friction test and unit cell run", "[pipeline][run]") {
   const Scratch scratch;
-  CHECK(pipeline::friction_case(options_for("friction_test.yaml", scratch / "friction", {})) ==
-        pipeline::exit_done);
+  // Its finite elements are tested where they live; here one pull of each kind is enough.
+  const auto friction =
+      options_for("friction_test.yaml", scratch / "friction",
+                  {"friction_test.rig.finite_elements=off", "friction_test.rig.dwell=0.1 s"});
+  REQUIRE(pipeline::friction_case(friction) == pipeline::exit_done);
+  check_rig(scratch / "friction");
   CHECK(pipeline::weave_case(options_for("unit_cell.yaml", scratch / "weave", {})) == pipeline::exit_done);
   CHECK(number(scratch / "weave", "areal_density_kg_m2") == Approx(0.703).epsilon(0.005));
   CHECK_FALSE(fs::exists(scratch / "weave" / "friction"));
@@ -99,7 +142,8 @@ TEST_CASE("a folder that holds another case is left alone without --force", "[pi
   unit_cell.cache = HEDDLE_TEST_CACHE;
   REQUIRE(pipeline::weave_case(unit_cell) == pipeline::exit_done);
   const auto before = contents(scratch / "x");
-  auto other = options_for("friction_test.yaml", scratch / "x", {});
+  auto other =
+      options_for("friction_test.yaml", scratch / "x", {"friction_test={data: data/friction_table4.csv}"});
   CHECK_THROWS_WITH(pipeline::friction_case(other),
                     Catch::Contains("holds another case: unit_cell") && Catch::Contains("--force"));
   CHECK((contents(scratch / "x") == before));

@@ -212,6 +212,40 @@ inline std::vector<FrictionTestRow> friction_test() {
           {"no measurement", 16.67e-3, 3000.0, 85 + kelvin, 180 + kelvin, 0.7854, 0.2577, 1546.0, {}, {}}};
 }
 
+/// Pulls of the rig: five speeds beside what was measured at two of them.
+inline std::vector<FrictionRigRow> friction_rig() {
+  const double kelvin = 273.15;
+  std::vector<FrictionRigRow> rows;
+  for (const double speed : {16.67e-3, 41.67e-3, 16.6e-3, 1.66e-3, 8.33e-3, 83.3e-3}) {
+    FrictionRigRow row;
+    row.name = "speed " + std::to_string(rows.size());
+    row.velocity = speed;
+    row.normal_force = 1500.0;
+    row.tool_temperature = 85 + kelvin;
+    row.fabric_temperature = 180 + kelvin;
+    row.law_force = 838.5 * std::pow(speed / 16.67e-3, 0.07);
+    row.steady_force = 0.95 * row.law_force;
+    row.element_force = 0.999 * row.law_force;
+    if (rows.size() < 2) row.measured_force = rows.empty() ? 843.0 : 896.0;
+    rows.push_back(row);
+  }
+  rows.push_back(rows[2]);
+  rows.back().name = "S-curve plates";
+  rows.back().curved = true;
+  rows.back().steady_force.reset();
+  return rows;
+}
+
+inline std::vector<FrictionHistoryRow> friction_history() {
+  std::vector<FrictionHistoryRow> rows;
+  for (int i = 0; i <= 50; ++i) {
+    const double normal = 1500.0 - 4.0 * i, slip = 1e-3 * i;
+    const double force = i == 0 ? 0.0 : 0.56 * normal * (1.0 + 0.3 * std::exp(-slip / 2e-3));
+    rows.push_back({"speed 0", 0.06 * i, slip, force, normal, force / (2.0 * normal), 380.0});
+  }
+  return rows;
+}
+
 inline std::vector<FrictionCurveRow> friction_curve() {
   std::vector<FrictionCurveRow> rows;
   for (const double pressure : {25e3, 100e3, 300e3}) {
