@@ -45,7 +45,7 @@ std::vector<ElementTable> element_tables(std::span<const Matrix6> stiffness, con
 Eigen::Matrix<double, 24, 24> element_matrix(const Matrix6& stiffness, const VoxelEdges& edges);
 
 /// One layer of voxels between two planes of nodes, periodic in x and y. Node planes hold loads doubles for
-/// each of three components for each node, x fastest, and may be read two doubles past their end.
+/// each of three components for each node, x fastest.
 struct VoxelLayer {
   int nx, ny;
   const double* lower;  ///< displacements of the plane below

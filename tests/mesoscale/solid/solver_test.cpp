@@ -60,7 +60,8 @@ TEST_CASE("transforms of any length give the sums that define them", "[solid][ff
     std::complex<double> sum = 0.0;
     for (int n = 0; n < length; ++n) {
       const auto at = static_cast<std::size_t>(2 * (n * stride + 1));
-      sum += std::polar(1.0, -2.0 * std::numbers::pi * k * n / length) * std::complex<double>(before[at], before[at + 1]);
+      sum += std::polar(1.0, -2.0 * std::numbers::pi * k * n / length) *
+             std::complex<double>(before[at], before[at + 1]);
     }
     const auto at = static_cast<std::size_t>(2 * (place * stride + 1));
     worst = std::max(worst, std::abs(sum - std::complex<double>(data[at], data[at + 1])));
