@@ -80,15 +80,19 @@ PeriodicStiffness periodic_stiffness(const ElasticCell& cell, const SolverOption
           found.memory};
 }
 
+void PlateStiffness::set_parts() {
+  a = all.topLeftCorner<3, 3>();
+  b = all.topRightCorner<3, 3>();
+  d = all.bottomRightCorner<3, 3>();
+}
+
 PlateStiffness plate_stiffness(const ElasticCell& cell, const SolverOptions& options) {
   const MacroLoad load = unit_plate_loads();
   const Energies found = solve(cell, Faces::free, load, options);
   const double area = cell.edges.determinant() / cell.edges(2, 2);
   PlateStiffness plate;
   plate.all = found.energy / area;
-  plate.a = plate.all.topLeftCorner<3, 3>();
-  plate.b = plate.all.topRightCorner<3, 3>();
-  plate.d = plate.all.bottomRightCorner<3, 3>();
+  plate.set_parts();
   plate.upper = macro_energy(cell, load) / area;
   plate.solver = found.solver;
   plate.checks = found.checks;

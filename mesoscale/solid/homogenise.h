@@ -38,6 +38,7 @@ struct PlateStiffness {
   Eigen::Matrix3d b;  ///< [N]
   Eigen::Matrix3d d;  ///< [N m]
   Matrix6 all;        ///< [A B; B D]
+  void set_parts();   ///< A, B and D from it
   Matrix6 upper;      ///< the same of fields without w: upper bound
   SolverSummary solver;
   HomogenisationChecks checks;

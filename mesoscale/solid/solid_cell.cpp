@@ -16,26 +16,26 @@ void check_range(Problems& problems, RuleId id, const std::string& key, const st
   if (!holds) problems.push_back({std::move(id), key, value, rule, way_out});
 }
 
-std::vector<BalancePair> balance_of(const SolidResult& result) {
-  std::vector<BalancePair> pairs;
-  if (result.stack) {
-    const Matrix6& c = result.stack->stiffness;
-    pairs.push_back({"C11", "C22", c(0, 0), c(1, 1)});
-    pairs.push_back({"C13", "C23", c(0, 2), c(1, 2)});
-    pairs.push_back({"G13", "G23", c(4, 4), c(3, 3)});
-  }
-  if (result.plate) {
-    pairs.push_back({"A11", "A22", result.plate->a(0, 0), result.plate->a(1, 1)});
-    pairs.push_back({"D11", "D22", result.plate->d(0, 0), result.plate->d(1, 1)});
-  }
-  return pairs;
-}
-
 }  // namespace
 
 double BalancePair::gap() const {
   const double larger = std::max(std::abs(first), std::abs(second));
   return larger > 0.0 ? std::abs(first - second) / larger : 0.0;
+}
+
+std::vector<BalancePair> balance_of(const SolidResult& result) {
+  std::vector<BalancePair> pairs;
+  if (result.stack) {
+    const Matrix6& c = result.stack->stiffness;
+    pairs.push_back({"C11", "C22", c(0, 0), c(1, 1), "MPa", 1e-6});
+    pairs.push_back({"C13", "C23", c(0, 2), c(1, 2), "MPa", 1e-6});
+    pairs.push_back({"G13", "G23", c(4, 4), c(3, 3), "MPa", 1e-6});
+  }
+  if (result.plate) {
+    pairs.push_back({"A11", "A22", result.plate->a(0, 0), result.plate->a(1, 1), "N/mm", 1e-3});
+    pairs.push_back({"D11", "D22", result.plate->d(0, 0), result.plate->d(1, 1), "N mm", 1e3});
+  }
+  return pairs;
 }
 
 std::vector<BalancePair> imbalances(const SolidResult& result) {

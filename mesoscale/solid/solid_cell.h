@@ -26,7 +26,9 @@ Problems check(const SolidSpec& spec);
 /// Two numbers that are the same in a balanced weave.
 struct BalancePair {
   std::string first_name, second_name;  ///< "C11", "C22"
-  double first, second;                 ///< [Pa], or A in [N/m], D in [N m]
+  double first, second;                 ///< in SI
+  std::string unit;                     ///< in which they are shown: "MPa"
+  double per_unit;                      ///< times SI
   double gap() const;                   ///< relative to the larger [-]
 };
 
@@ -40,6 +42,9 @@ struct SolidResult {
   std::size_t different_voxels = 0;
   std::vector<BalancePair> balance;  ///< all that were compared
 };
+
+/// What a balanced weave has twice.
+std::vector<BalancePair> balance_of(const SolidResult& result);
 
 /// Those that differ by more than 0.1 %: from an unbalanced weave, or from axes in the wrong order.
 std::vector<BalancePair> imbalances(const SolidResult& result);

@@ -20,8 +20,7 @@ void check_numbers(Problems& problems, const VoxelFileSpec& spec) {
   const bool shaped =
       std::all_of(spec.shape.begin(), spec.shape.end(), [](int n) { return n >= 1 && n <= 4096; });
   if (!shaped)
-    problems.push_back({"*.range"_family.of("cell.voxels.shape"), "cell.voxels.shape",
-                        fmt::format("[{}, {}, {}]", spec.shape[0], spec.shape[1], spec.shape[2]),
+    problems.push_back({"*.range"_family.of("cell.voxels.shape"), "cell.voxels.shape", "",
                         "must be three whole numbers from 1 to 4096", "Voxels along x, y and z."});
   const bool sized =
       std::all_of(spec.size.begin(), spec.size.end(), [](double l) { return l > 0.0 && l < 10.0; });

@@ -87,7 +87,7 @@ TEST_CASE("the solid part of Table 1 is balanced by name, and lies below its upp
 
 TEST_CASE("a cell that is not balanced is found, with the numbers", "[solid][cell]") {
   SolidResult result = analyse(WeaveSpec{}, coarse());
-  result.balance.push_back({"C11", "C22", 7.0e9, 7.5e9});
+  result.balance.push_back({"C11", "C22", 7.0e9, 7.5e9, "MPa", 1e-6});
   const std::vector<BalancePair> found = imbalances(result);
   REQUIRE(found.size() == 1);
   CHECK(found[0].gap() == Approx(0.5 / 7.5));
