@@ -36,6 +36,7 @@ pipeline::RunOptions options_for(const std::string& config, const fs::path& outp
   options.file = fs::path(HEDDLE_SOURCE_DIR) / "configs" / config;
   options.output = output;
   options.assignments = std::move(settings);
+  options.cache = HEDDLE_TEST_CACHE;
   options.quiet = true;
   options.print = false;
   return options;
@@ -60,7 +61,6 @@ bool has(const std::vector<pipeline::Verdict>& verdicts, pipeline::Tone tone, co
 TEST_CASE("a weave with solid writes its stiffness, from the cache to the same bytes", "[pipeline][solid]") {
   const Scratch scratch;
   auto options = options_for("unit_cell.yaml", scratch.path / "first", coarse);
-  options.cache = scratch.path / "cache";
   CHECK(pipeline::weave_case(options) == 0);
   const std::string text = read_text_file(scratch.path / "first/mesoscale/stiffness.json");
   const auto json = nlohmann::json::parse(text);
