@@ -107,25 +107,30 @@ TEST_CASE("a square array of fibres lies between the bounds of Hill and Hashin",
   CHECK(c(3, 3) == Approx(c(4, 4)).epsilon(1e-6));
 }
 
-TEST_CASE("with mixed voxels the sheet's stiffness converges with order 1.5 or more",
-          "[solid][convergence]") {
+TEST_CASE("mixed voxels bring the sheet of Table 1 within 0.3 % on 64 x 64 x 32", "[solid][convergence]") {
+  // Plain voxels up to 256 x 256 x 128 tend to 13.50 GPa and 50.97 N mm (benchmark_solid 256). Two errors of
+  // mixed voxels run against each other: Ritz's, from above, falls fast; the layers in a voxel are too soft,
+  // in proportion to it.
+  const double finest_membrane = 13.503e9, finest_bending = 50.97e-3;
+  const FabricGeometry fabric = fabric_geometry(WeaveSpec{}, CellState::consolidated);
+  const SolidSpec spec;
+  const TransverseIsotropy tow =
+      chamis({WeaveSpec{}.fibre_modulus, spec.fibre_poisson}, spec.resin, fabric.crossing.fibre_fraction);
+  const std::array phases{stiffness(spec.resin), stiffness(tow)};
   std::vector<double> stretched, bent;
   for (const int n : {8, 16, 32}) {
-    SolidSpec spec;
-    spec.grid = {.per_pitch = n, .layers = n};
-    const FabricGeometry fabric = fabric_geometry(WeaveSpec{}, CellState::consolidated);
-    const VoxelCell cell = sample(unit_cell(fabric, 0.0), fabric.thickness, spec.grid);
-    const std::array phases{stiffness(polypropylene), tow_stiffness()};
+    const VoxelCell cell = sample(unit_cell(fabric, 0.0), fabric.thickness, {.per_pitch = n, .layers = n});
     const std::vector<Matrix6> c = content_stiffness(cell, phases);
     const PlateStiffness plate = plate_stiffness(elastic_cell(cell, c));
-    stretched.push_back(plate.a(0, 0));
-    bent.push_back(plate.d(0, 0));
+    stretched.push_back(plate.a(0, 0) / fabric.thickness / finest_membrane - 1.0);
+    bent.push_back(plate.d(0, 0) / finest_bending - 1.0);
   }
-  const auto order = [](const std::vector<double>& v) {
-    return std::log2(std::abs((v[1] - v[0]) / (v[2] - v[1])));
-  };
-  std::cout << "observed order of A11 " << order(stretched) << ", of D11 " << order(bent) << "\n";
-  CHECK(order(stretched) > 1.5);
-  CHECK(order(bent) > 1.5);
-  CHECK(std::abs(stretched[2] - stretched[1]) < 0.005 * stretched[2]);
+  const auto order = [](const std::vector<double>& e) { return std::log2((e[0] - e[1]) / (e[1] - e[2])); };
+  std::cout << "A11 off by " << stretched[0] << ", " << stretched[1] << ", " << stretched[2] << "; D11 by "
+            << bent[0] << ", " << bent[1] << ", " << bent[2] << "; observed orders " << order(stretched)
+            << ", " << order(bent) << "\n";
+  CHECK(std::abs(stretched[0]) < 0.01);
+  CHECK(std::abs(stretched[2]) < 0.003);
+  CHECK(std::abs(bent[2]) < 0.004);
+  CHECK(order(bent) > 1.5);  // of the bending of few layers; not the order of fine grids
 }
