@@ -3,6 +3,7 @@
 #include <Eigen/LU>
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <map>
 #include <numbers>
 #include <unordered_map>
@@ -179,7 +180,8 @@ class Sampler {
   }
 
   VoxelCell collect(const std::vector<Key>& keys) const {
-    std::vector<Key> distinct = keys;
+    std::vector<Key> distinct;  // neighbours are mostly alike
+    std::unique_copy(keys.begin(), keys.end(), std::back_inserter(distinct));
     tbb::parallel_sort(distinct.begin(), distinct.end());
     distinct.erase(std::unique(distinct.begin(), distinct.end()), distinct.end());
     if (distinct.size() > 65535)
