@@ -17,6 +17,7 @@
 #include "macroscale/tool_set.h"
 #include "pipeline/friction_keys.h"
 #include "pipeline/outputs.h"
+#include "pipeline/solid_keys.h"
 
 namespace heddle::pipeline {
 namespace {
@@ -277,6 +278,8 @@ Case case_of(const ReadConfig& config, const std::filesystem::path& folder) {
   Case result;
   take(settings, "name", result.name);
   if (runs(Stage::cell)) result.cell = cell_of(settings);
+  if (runs(Stage::solid)) result.solid = solid_of(settings);
+  if (runs(Stage::voxels)) result.voxels = voxels_of(settings, folder);
   if (runs(Stage::friction)) result.friction = friction_of(settings, folder);
   if (runs(Stage::friction_test)) result.friction_test = friction_test_of(settings, folder);
   if (result.friction_test && settings.blocks.count("friction_test.rig") > 0)
@@ -509,10 +512,25 @@ Problems read_drawing(Case& a_case, const std::filesystem::path& folder) {
   return {};
 }
 
+/// A voxel file is a cell without forming laws: nothing can follow it.
+Problems check_voxels(const Case& a_case, const ReadConfig& config) {
+  Problems problems;
+  if (a_case.cell || a_case.friction)
+    problems.push_back(
+        {"cell.voxels.alone"_rule, "cell.voxels.file", "",
+         "is a cell of its own, which has stiffness but no forming laws; it stands alone",
+         "Leave weave, solid, friction, process, tools and blank out, or leave out cell.voxels."});
+  if (any_below(config.failed, {"cell"})) return problems;  // a file that cannot be read has no labels
+  append(problems, mesoscale::solid::check(*a_case.voxels));
+  return problems;
+}
+
 /// Every rule that the rooms and this file know, on a case whose keys without a value hold their defaults.
 Problems check_between_keys(const Case& a_case, const ReadConfig& config) {
   Problems problems;
   if (a_case.cell) append(problems, mesoscale::check(*a_case.cell));
+  if (a_case.solid) append(problems, mesoscale::solid::check(*a_case.solid));
+  if (a_case.voxels) append(problems, check_voxels(a_case, config));
   if (a_case.friction) {
     append_new(problems, check_friction(*a_case.friction, config));
     append(problems, check_pulled_weave(a_case));
@@ -669,6 +687,14 @@ std::vector<std::string> stage_lines(const Case& a_case) {
   if (a_case.cell) {
     lines.push_back(fmt::format("mesoscale: {} weave, {}", a_case.cell->weave.pattern,
                                 a_case.settings.text("cell.state")));
+  }
+  if (a_case.solid)
+    lines.push_back(fmt::format("solid: stiffness of the consolidated weave, {} voxels a pitch, {} layers",
+                                a_case.solid->grid.per_pitch, a_case.solid->grid.layers));
+  if (a_case.voxels) {
+    const auto [nx, ny, nz] = a_case.voxels->shape;
+    lines.push_back(fmt::format("solid: stiffness of {} x {} x {} voxels, {}", nx, ny, nz,
+                                a_case.settings.text("cell.boundary")));
   }
   if (a_case.friction) lines.push_back(friction_line(*a_case.friction));
   if (a_case.friction_test) lines.push_back("friction test: comparison with friction_test.data");

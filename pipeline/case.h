@@ -12,6 +12,7 @@
 #include "macroscale/stamping.h"
 #include "mesoscale/cell_spec.h"
 #include "pipeline/calibrate_keys.h"
+#include "mesoscale/solid/solid_cell.h"
 #include "pipeline/config_reader.h"
 
 namespace heddle::pipeline {
@@ -52,6 +53,8 @@ struct OrientationStudySpec {
 struct Case {
   std::string name;
   std::optional<mesoscale::CellSpec> cell;
+  std::optional<mesoscale::solid::SolidSpec> solid;       ///< stiffness of the weave's solid part
+  std::optional<mesoscale::solid::VoxelFileSpec> voxels;  ///< stiffness of a cell of its own, from a file
   std::optional<FrictionSpec> friction;
   std::optional<FrictionTestSpec> friction_test;
   std::optional<FrictionMachineSpec> friction_machine;

@@ -17,6 +17,8 @@
 #include "pipeline/orientation.h"
 #include "pipeline/report.h"
 #include "pipeline/run_folder.h"
+#include "pipeline/solid_stage.h"
+#include "pipeline/solid_store.h"
 #include "pipeline/stage_keys.h"
 #include "pipeline/stage_store.h"
 #include "pipeline/stages.h"
@@ -34,6 +36,7 @@ constexpr double degrees = 180.0 / std::numbers::pi;
 struct Findings {
   std::optional<mesoscale::CellResult> cell;
   std::optional<WeavePictures> pictures;
+  std::optional<mesoscale::solid::SolidResult> solid;
   std::optional<FrictionStage> friction;
   std::optional<FrictionRigStage> friction_rig;
   std::optional<macroscale::StampingResult> stamping;
@@ -86,6 +89,13 @@ void run_cell(const Case& a_case, RunFolder& folder, const Cache& cache, Finding
       s.areal_density, 100.0 * s.crimp[0], degrees * s.gap_closure_angle, 100.0 * s.contact_area_fraction));
 }
 
+void run_solid(const Case& a_case, RunFolder& folder, const Cache& cache, Findings& findings) {
+  if (!a_case.solid && !a_case.voxels) return;
+  findings.solid = cached<mesoscale::solid::SolidResult>(
+      folder, cache, ChainStage::solid, a_case, read_solid_result, [&] { return run_solid_stage(a_case); });
+  folder.write("mesoscale/stiffness.json", stiffness_json(*findings.solid));
+}
+
 void run_friction(const Case& a_case, RunFolder& folder, const Cache& cache, Findings& findings) {
   if (!a_case.friction) return;
   findings.friction = cached<FrictionStage>(
@@ -127,6 +137,7 @@ void run_grid_error(const Case& a_case, const RunOptions& options, RunFolder& fo
 }
 
 std::string description_of(const Case& a_case) {
+  if (a_case.voxels) return "The stiffness of one cell of voxels.";
   if (!a_case.stamping)
     return a_case.cell && !a_case.friction_machine ? "One unit cell of the weave." : "The friction test.";
   const auto& s = *a_case.stamping;
@@ -179,6 +190,7 @@ ReportInput report_input(const Case& a_case, const Findings& findings) {
     input.height = report_height(findings.pictures->height);
     input.section = report_section(findings.pictures->section);
   }
+  input.solid = findings.solid;
   if (findings.friction) {
     input.friction_test = findings.friction->test;
     input.friction_curve = findings.friction->curve;
@@ -219,6 +231,7 @@ std::vector<std::pair<std::string, std::string>> stage_hashes(const Case& a_case
     hashes.emplace_back(name_of(stage), inputs_of(stage, a_case).key());
   };
   if (a_case.cell) add(ChainStage::mesoscale);
+  if (a_case.solid || a_case.voxels) add(ChainStage::solid);
   if (a_case.friction) add(ChainStage::friction);
   if (a_case.friction_machine) add(ChainStage::friction_rig);
   if (a_case.stamping) add(ChainStage::macroscale);
@@ -329,7 +342,10 @@ Case read_part(const RunOptions& options, Part part) {
   if (part != Part::all) a_case.stamping.reset();
   if (part == Part::weave)
     a_case.friction.reset(), a_case.friction_test.reset(), a_case.friction_machine.reset();
-  const bool empty = part == Part::weave ? !a_case.cell : part == Part::friction ? !a_case.friction : false;
+  if (part == Part::friction) a_case.solid.reset();
+  const bool empty = part == Part::weave      ? !a_case.cell && !a_case.voxels
+                     : part == Part::friction ? !a_case.friction
+                                              : false;
   if (empty)
     throw InputError({{"case.part"_rule, part == Part::weave ? "weave" : "friction", "",
                        "is missing, and this command needs it",
@@ -341,6 +357,7 @@ Case read_part(const RunOptions& options, Part part) {
 
 void print_findings(const Case& a_case, const Findings& findings, Part part, const fs::path& folder) {
   if (findings.cell && part != Part::friction) print_cell(findings.cell->summary, findings.pictures->bodies);
+  if (findings.solid && part != Part::friction) print_solid(*findings.solid);
   if (findings.friction && !findings.stamping) print_friction(*findings.friction);
   if (findings.friction_rig && !findings.stamping) print_friction_rig(*findings.friction_rig);
   if (findings.stamping) print_stamping(findings.stamping->summary, findings.grid_error);
@@ -454,6 +471,7 @@ RunEnding run_part(const RunOptions& options, Part part) {
   const int steps = a_case.stamping ? a_case.stamping->process.steps : 0;
   const auto interrupted_before_stamping = [&] { return a_case.stamping && InterruptGuard::interrupted(); };
   run_cell(a_case, folder, cache, findings);
+  run_solid(a_case, folder, cache, findings);
   if (interrupted_before_stamping()) return say_interrupted(options, folder, findings, steps);
   run_friction(a_case, folder, cache, findings);
   run_friction_rig(a_case, folder, cache, findings);

@@ -375,13 +375,18 @@ class ConfigReader {
     if (given("friction_test")) stages.insert(Stage::friction_test);
     if (given("calibrate")) stages.insert(Stage::calibrate);
     if (given("friction") || stages.size() > 1) stages.insert(Stage::friction);
-    const bool weave = given("weave") || given("cell") || given("fabric") || given("forming");
+    const bool voxels = config_.root.find_path("cell.voxels") != nullptr;
+    const bool weave =
+        given("weave") || (given("cell") && !voxels) || given("fabric") || given("forming") || given("solid");
     const ConfigNode* pressure = config_.root.find_path("friction.contact_pressure");
     const bool nominal = pressure != nullptr && pressure->text == "nominal";
     const bool friction_needs_area = stages.count(Stage::friction) > 0 && !nominal;
-    if (weave || stages.count(Stage::stamping) > 0 || friction_needs_area || stages.size() == 1) {
+    const bool nothing_else = stages.size() == 1 && !voxels;
+    if (weave || stages.count(Stage::stamping) > 0 || friction_needs_area || nothing_else) {
       stages.insert(Stage::cell);
     }
+    if (given("solid")) stages.insert(Stage::solid);
+    if (voxels) stages.insert(Stage::voxels);
   }
 
   bool stage_runs(const Key& key) const { return config_.settings.stages.count(key.stage) > 0; }
@@ -438,6 +443,10 @@ class ConfigReader {
         return "";
       case Stage::cell:
         return " to build the cell";
+      case Stage::solid:
+        return " for the solid part";
+      case Stage::voxels:
+        return key.used_when.empty() ? " for a voxel cell" : " when " + readable(key.used_when);
       case Stage::friction:
         return key.used_when.empty() ? " for friction" : " when " + readable(key.used_when);
     }

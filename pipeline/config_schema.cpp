@@ -9,6 +9,7 @@
 #include "core/units.h"
 #include "pipeline/calibrate_keys.h"
 #include "pipeline/friction_keys.h"
+#include "pipeline/solid_keys.h"
 
 namespace heddle::pipeline {
 namespace {
@@ -67,9 +68,12 @@ std::vector<Key> weave_keys() {
       {.path = "cell.state", .type = KeyType::choice, .presence = defaulted, .default_text = "as_woven",
        .choices = {"as_woven", "consolidated"}, .stage = cell,
        .help = "as_woven: molten, at fabric thickness, for forming; consolidated: the solid part."},
-      later("cell.voxels", "Cell from a voxel file."),
-      later("cell.boundary", "Boundary of a voxel cell."),
-      later("cell.phases", "Elastic constants of voxel phases."),
+  };
+}
+
+std::vector<Key> fabric_keys() {
+  const auto cell = Stage::cell;
+  return {
       {.path = "fabric.shear_rate", .type = KeyType::choice, .presence = defaulted, .default_text = "on",
        .choices = {"on", "off"}, .stage = cell,
        .help = "Master switch of the rate-dependent shear resistance."},
@@ -386,6 +390,9 @@ std::vector<Key> artefact_keys() {
 std::vector<Key> all_keys() {
   std::vector<Key> keys = head_keys();
   append(keys, weave_keys());
+  append(keys, voxel_keys());
+  append(keys, fabric_keys());
+  append(keys, solid_keys());
   append(keys, resin_keys());
   append(keys, rheology_keys());
   append(keys, forming_keys());

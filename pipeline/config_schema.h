@@ -27,7 +27,18 @@ enum class Presence {
 };
 
 /// What a key is for: keys are asked for only if their stage runs.
-enum class Stage { always, cell, friction, friction_test, stamping, grid_error, orientation_study, calibrate };
+enum class Stage {
+  always,
+  cell,
+  solid,
+  voxels,
+  friction,
+  friction_test,
+  stamping,
+  grid_error,
+  orientation_study,
+  calibrate
+};
 
 /// One key of the configuration. The table of these is the one source of validation, defaults and the
 /// reference page.

@@ -15,6 +15,7 @@
 #include "macroscale/stamping.h"
 #include "mesoscale/cell_spec.h"
 #include "mesoscale/level_set.h"
+#include "mesoscale/solid/solid_cell.h"
 
 /// The files of a run as text. Functions named after a file return its bytes; `write_file` puts them in
 /// place. Numbers are written in the shortest form that reads back as the same double, so equal results give
@@ -145,6 +146,10 @@ struct SummaryRecord {
 };
 
 std::string summary_json(const SummaryRecord& record);
+
+/// Stiffness of the solid part, Voigt (shear strains doubled). What was not computed is absent: C of a stack
+/// without end, A, B and D of one ply with free faces. `iterations` lists the load cases of C, then of the ply.
+std::string stiffness_json(const mesoscale::solid::SolidResult& result);
 
 std::string fabric_json(const mesoscale::FabricProperties& fabric);
 /// Reads what fabric_json wrote: every number comes back bit for bit.

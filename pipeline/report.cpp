@@ -8,6 +8,7 @@
 
 #include "pipeline/page.h"
 #include "pipeline/report_figures.h"
+#include "pipeline/report_solid.h"
 #include "pipeline/rig_figures.h"
 
 namespace heddle::pipeline {
@@ -46,9 +47,10 @@ std::string results(const ReportInput& input) {
 }
 
 std::string header(const ReportInput& input) {
-  const std::string_view kind = input.stamping                             ? "Stamping report"
-                                : input.cell && input.friction_rig.empty() ? "Unit-cell report"
-                                                                           : "Friction report";
+  const bool of_cell = (input.cell || input.solid) && input.friction_rig.empty();
+  const std::string_view kind = input.stamping ? "Stamping report"
+                                : of_cell      ? "Unit-cell report"
+                                               : "Friction report";
   std::string out =
       fmt::format("<header>\n<p class=\"kind\">heddle · {}</p>\n<h1>{}</h1>\n", kind, escape(input.name));
   if (!input.description.empty()) out += fmt::format("<p class=\"lead\">{}</p>\n", escape(input.description));
@@ -131,6 +133,17 @@ std::string weave(const ReportInput& input) {
   }
   if (input.cell) right = "<div>\n" + facts_table(cell_facts(*input.cell)) + "</div>\n";
   return out + pair(left, right);
+}
+
+std::string solid_part(const ReportInput& input) {
+  if (!input.solid) return "";
+  const std::string_view caption =
+      input.solid->tow ? "How stiff the cold, consolidated sheet is in each direction. A ply bent is another "
+                         "material than a ply stretched: its fibres lie where its faces are not."
+                       : "How stiff the cell is in each direction of its plane.";
+  return pair(figure(stiffness_chart(*input.solid), caption),
+              "<div>\n" + facts_table(solid_facts(*input.solid)) + "</div>\n") +
+         stiffness_tables(*input.solid);
 }
 
 std::string signed_percent(const std::optional<double>& share) {
@@ -257,6 +270,7 @@ std::string report_html(const ReportInput& input) {
   out += section("Forces and motion", forces(input));
   out += section("Is the answer sound?", soundness(input));
   out += section("The weave", weave(input));
+  out += section("The solid part", solid_part(input));
   out += section("Contact and friction", friction_section(input));
   out += section("The friction test as a machine", rig(input));
   out += section("What it rests on", grounds(input));

@@ -5,6 +5,7 @@
 #include <numbers>
 
 #include "pipeline/report.h"
+#include "pipeline/report_solid.h"
 
 namespace heddle::pipeline {
 
@@ -220,6 +221,8 @@ std::vector<Verdict> verdicts(const ReportInput& input) {
     friction_range(out, *input.stamping);
   }
   friction_comparison(out, input);
+  if (input.solid)
+    for (Verdict& verdict : solid_verdicts(*input.solid)) out.add(verdict.tone, std::move(verdict.text));
   if (input.fabric) priors(out, *input.fabric);
   for (const std::string& warning : input.warnings) out.add(Tone::attention, warning);
   return std::move(out).list();

@@ -30,6 +30,7 @@ bool stamps(ChainStage stage) {
 std::vector<ChainStage> chain_of(ChainStage stage, const Case& a_case) {
   std::vector<ChainStage> chain;
   if (a_case.cell) chain.push_back(ChainStage::mesoscale);
+  if (stage == ChainStage::solid) return {ChainStage::mesoscale, ChainStage::solid};
   if (stage != ChainStage::mesoscale && a_case.friction) chain.push_back(ChainStage::friction);
   if (stage == ChainStage::friction_rig) chain.push_back(stage);
   if (stamps(stage)) chain.push_back(ChainStage::macroscale);
@@ -40,6 +41,7 @@ std::vector<ChainStage> chain_of(ChainStage stage, const Case& a_case) {
 std::vector<std::string> source_groups(ChainStage stage) {
   switch (stage) {
     case ChainStage::mesoscale:
+    case ChainStage::solid:
       return {"core", "mesoscale", "stages", "build"};
     case ChainStage::friction:
       return {"core", "friction", "mesoscale", "stages", "build"};
@@ -67,6 +69,8 @@ std::string name_of(ChainStage stage) {
   switch (stage) {
     case ChainStage::mesoscale:
       return "mesoscale";
+    case ChainStage::solid:
+      return "solid";
     case ChainStage::friction:
       return "friction";
     case ChainStage::friction_rig:
@@ -94,6 +98,9 @@ bool reads(ChainStage stage, const Key& key) {
     }
     case Stage::cell:
       return stage == ChainStage::mesoscale;
+    case Stage::solid:
+    case Stage::voxels:
+      return stage == ChainStage::solid;
     case Stage::friction:
       return stage == ChainStage::friction;
     case Stage::friction_test: {  // what only the machine reads moves nothing that the stamping takes from
@@ -164,6 +171,7 @@ std::vector<std::string> differences(const std::string& before, const std::strin
 std::string case_hash(const Case& a_case) {
   std::string text;
   if (a_case.cell) text += inputs_of(ChainStage::mesoscale, a_case).text();
+  if (a_case.solid || a_case.voxels) text += inputs_of(ChainStage::solid, a_case).text();
   if (a_case.friction) text += inputs_of(ChainStage::friction, a_case).text();
   if (a_case.friction_machine) text += inputs_of(ChainStage::friction_rig, a_case).text();
   if (a_case.stamping) text += inputs_of(ChainStage::macroscale, a_case).text();

@@ -11,7 +11,7 @@
 /// same bytes.
 namespace heddle::pipeline {
 
-enum class ChainStage { mesoscale, friction, friction_rig, macroscale, grid_error };
+enum class ChainStage { mesoscale, solid, friction, friction_rig, macroscale, grid_error };
 
 /// "mesoscale": the name in manifest.json and in messages.
 std::string name_of(ChainStage stage);

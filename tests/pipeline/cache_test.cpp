@@ -183,7 +183,8 @@ TEST_CASE("a cache that cannot be written to costs a line in the log and no run"
 TEST_CASE("every key of the configuration is in the key of a stage, but for those that change no result",
           "[pipeline][cache]") {
   const auto& idle = pipeline::keys_without_effect();
-  const std::vector<ChainStage> stages{ChainStage::mesoscale, ChainStage::friction, ChainStage::friction_rig,
+  const std::vector<ChainStage> stages{ChainStage::mesoscale,  ChainStage::solid,
+                                       ChainStage::friction,   ChainStage::friction_rig,
                                        ChainStage::macroscale, ChainStage::grid_error};
   for (const pipeline::Key& key : pipeline::schema()) {
     INFO(key.path);

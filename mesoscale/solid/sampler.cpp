@@ -1,0 +1,254 @@
+#include "mesoscale/solid/sampler.h"
+
+#include <Eigen/LU>
+#include <algorithm>
+#include <cmath>
+#include <iterator>
+#include <map>
+#include <numbers>
+#include <unordered_map>
+
+#include <fmt/format.h>
+#include <tbb/parallel_for.h>
+#include <tbb/parallel_sort.h>
+
+#include "core/problem.h"
+
+namespace heddle::mesoscale::solid {
+
+namespace {
+
+constexpr int across_voxel = 4;  // columns along x and along y
+constexpr int share_steps = 32;  // of a voxel
+constexpr double direction_step = 0.5 * std::numbers::pi / 180.0;
+constexpr int direction_middle = 512;  // bin of a level tow
+constexpr int normal_steps = 8;        // of each component
+
+// Everything that makes two voxels alike, in one number; 0 is resin.
+using Key = std::uint64_t;
+
+struct Recipe {
+  int warp = 0, weft = 0;                      // shares in steps
+  int warp_direction = 0, weft_direction = 0;  // bins; 0: none
+  std::array<int, 3> normal{};                 // components in steps; 0: one material only
+
+  Key key() const {
+    Key k = 0;
+    const auto push = [&](int value, int bits) { k = k << bits | static_cast<Key>(value); };
+    push(warp, 6);
+    push(weft, 6);
+    push(warp_direction, 11);
+    push(weft_direction, 11);
+    for (const int n : normal) push(n + normal_steps, 5);
+    return warp + weft == 0 ? 0 : k;
+  }
+  static Recipe of(Key k) {
+    Recipe r;
+    if (k == 0) return r;
+    const auto pop = [&](int bits) {
+      const int value = static_cast<int>(k & ((Key{1} << bits) - 1));
+      k >>= bits;
+      return value;
+    };
+    for (int i = 2; i >= 0; --i) r.normal[static_cast<std::size_t>(i)] = pop(5) - normal_steps;
+    r.weft_direction = pop(11);
+    r.warp_direction = pop(11);
+    r.weft = pop(6);
+    r.warp = pop(6);
+    return r;
+  }
+};
+
+double overlap(double low, double high, double bottom, double top) {
+  return std::max(0.0, std::min(high, top) - std::max(low, bottom));
+}
+
+int direction_bin(double rise, double run) {
+  return direction_middle + static_cast<int>(std::lround(std::atan2(rise, run) / direction_step));
+}
+
+class Sampler {
+ public:
+  Sampler(const UnitCell& cell, double thickness, const SamplerOptions& options)
+      : cell_(cell),
+        options_(options),
+        thickness_(thickness),
+        count_{options.per_pitch * cell.weave.wefts, options.per_pitch * cell.weave.warps, options.layers},
+        step_(cell.pitch / options.per_pitch),
+        height_(thickness / options.layers),
+        share_(2, std::vector<float>(voxels())) {
+    const std::array<double, 2> size = cell.size();
+    const auto x = cell.place(size[0], 0.0), y = cell.place(0.0, size[1]);
+    edges_ << x[0], y[0], 0.0, x[1], y[1], 0.0, 0.0, 0.0, thickness;
+    to_reference_ = edges_.inverse().transpose();
+  }
+
+  VoxelCell run() {
+    tbb::parallel_for(0, count_[1], [&](int j) { fill_shares(j); });
+    std::vector<Key> keys(voxels());
+    tbb::parallel_for(0, count_[1], [&](int j) { fill_keys(j, keys); });
+    return collect(keys);
+  }
+
+ private:
+  std::size_t voxels() const { return static_cast<std::size_t>(count_[0]) * count_[1] * count_[2]; }
+  std::size_t at(int i, int j, int k) const {
+    return (static_cast<std::size_t>(k) * count_[1] + j) * count_[0] + i;
+  }
+
+  void fill_shares(int j) {
+    std::vector<double> sums(2 * static_cast<std::size_t>(count_[2]));
+    for (int i = 0; i < count_[0]; ++i) {
+      std::fill(sums.begin(), sums.end(), 0.0);
+      for (int b = 0; b < across_voxel; ++b)
+        for (int a = 0; a < across_voxel; ++a) {
+          const Column c =
+              column(cell_, (i + (a + 0.5) / across_voxel) * step_, (j + (b + 0.5) / across_voxel) * step_);
+          if (c.warp) add(c.warp_bottom, c.warp_top, 0, sums);
+          if (c.weft) add(c.weft_bottom, c.weft_top, 1, sums);
+        }
+      for (int k = 0; k < count_[2]; ++k)
+        for (std::size_t tow = 0; tow < 2; ++tow)
+          share_[tow][at(i, j, k)] = static_cast<float>(sums[2 * static_cast<std::size_t>(k) + tow] /
+                                                        (across_voxel * across_voxel * height_));
+    }
+  }
+
+  // The part of a column that a tow fills, to the voxels it passes.
+  void add(double bottom, double top, std::size_t tow, std::vector<double>& sums) const {
+    const double low = -0.5 * thickness_;
+    const int first = std::clamp(static_cast<int>((bottom - low) / height_), 0, count_[2] - 1);
+    const int last = std::clamp(static_cast<int>((top - low) / height_), 0, count_[2] - 1);
+    for (int k = first; k <= last; ++k)
+      sums[2 * static_cast<std::size_t>(k) + tow] +=
+          overlap(low + k * height_, low + (k + 1) * height_, bottom, top);
+  }
+
+  void fill_keys(int j, std::vector<Key>& keys) const {
+    const double eta = (j + 0.5) * step_;
+    for (int i = 0; i < count_[0]; ++i) {
+      const double xi = (i + 0.5) * step_;
+      const int warp = static_cast<int>(std::lround(eta / cell_.pitch)),
+                weft = static_cast<int>(std::lround(xi / cell_.pitch));
+      const double warp_rise =
+          warp_centre(cell_, warp, xi + 0.5 * step_) - warp_centre(cell_, warp, xi - 0.5 * step_);
+      const double weft_rise =
+          weft_centre(cell_, weft, eta + 0.5 * step_) - weft_centre(cell_, weft, eta - 0.5 * step_);
+      const int warp_bin = direction_bin(warp_rise, step_), weft_bin = direction_bin(weft_rise, step_);
+      for (int k = 0; k < count_[2]; ++k) keys[at(i, j, k)] = recipe(i, j, k, warp_bin, weft_bin).key();
+    }
+  }
+
+  Recipe recipe(int i, int j, int k, int warp_bin, int weft_bin) const {
+    const double warp = share_[0][at(i, j, k)], weft = share_[1][at(i, j, k)];
+    Recipe r;
+    if (options_.mixing == Mixing::dominant) {
+      const double resin = 1.0 - warp - weft;
+      if (warp >= std::max(weft, resin))
+        r.warp = share_steps;
+      else if (weft >= resin)
+        r.weft = share_steps;
+    } else {
+      r.warp = static_cast<int>(std::lround(share_steps * warp));
+      r.weft = std::min(static_cast<int>(std::lround(share_steps * weft)), share_steps - r.warp);
+    }
+    if (r.warp > 0) r.warp_direction = warp_bin;
+    if (r.weft > 0) r.weft_direction = weft_bin;
+    const bool pure = r.warp + r.weft == 0 || r.warp == share_steps || r.weft == share_steps;
+    if (!pure) r.normal = normal(r.warp >= r.weft ? 0 : 1, i, j, k);
+    return r;
+  }
+
+  // Of the surface of a tow, by the gradient of its share; upwards.
+  std::array<int, 3> normal(std::size_t tow, int i, int j, int k) const {
+    const auto wrap = [](int n, int size) { return (n + size) % size; };
+    const auto share = [&](int x, int y, int z) {
+      return static_cast<double>(share_[tow][at(wrap(x, count_[0]), wrap(y, count_[1]), z)]);
+    };
+    const int low = std::max(k - 1, 0), high = std::min(k + 1, count_[2] - 1);
+    const Eigen::Vector3d in_cell(
+        0.5 * count_[0] * (share(i + 1, j, k) - share(i - 1, j, k)),
+        0.5 * count_[1] * (share(i, j + 1, k) - share(i, j - 1, k)),
+        high == low ? 0.0 : count_[2] * (share(i, j, high) - share(i, j, low)) / (high - low));
+    Eigen::Vector3d n = to_reference_ * in_cell;
+    // A share that is the same all round has no interface to speak of; across the sheet is as good as any.
+    if (!(n.norm() > 1e-9 / thickness_)) return {0, 0, normal_steps};
+    n *= normal_steps / n.norm();
+    if (n.z() < 0.0) n = -n;
+    return {static_cast<int>(std::lround(n.x())), static_cast<int>(std::lround(n.y())),
+            static_cast<int>(std::lround(n.z()))};
+  }
+
+  VoxelCell collect(const std::vector<Key>& keys) const {
+    std::vector<Key> distinct;  // neighbours are mostly alike
+    std::unique_copy(keys.begin(), keys.end(), std::back_inserter(distinct));
+    tbb::parallel_sort(distinct.begin(), distinct.end());
+    distinct.erase(std::unique(distinct.begin(), distinct.end()), distinct.end());
+    if (distinct.size() > 65535)
+      throw NumericalError(
+          fmt::format("voxels: the grid has {} different voxels, at most 65535 are held", distinct.size()));
+    VoxelCell cell;
+    cell.count = count_;
+    cell.edges = edges_;
+    std::map<std::pair<bool, int>, std::uint16_t> directions;
+    std::unordered_map<Key, std::uint16_t> index;
+    for (const Key key : distinct) {
+      index[key] = static_cast<std::uint16_t>(cell.contents.size());
+      cell.contents.push_back(content(Recipe::of(key), directions, cell.directions));
+    }
+    cell.content.resize(keys.size());
+    tbb::parallel_for(std::size_t{0}, static_cast<std::size_t>(count_[2]), [&](std::size_t k) {
+      const std::size_t layer = static_cast<std::size_t>(count_[0]) * count_[1];
+      Key last = keys[layer * k];
+      std::uint16_t of_last = index.at(last);
+      for (std::size_t v = layer * k; v < layer * (k + 1); ++v) {
+        if (keys[v] != last) {
+          last = keys[v];
+          of_last = index.at(last);
+        }
+        cell.content[v] = of_last;
+      }
+    });
+    return cell;
+  }
+
+  VoxelContent content(const Recipe& r, std::map<std::pair<bool, int>, std::uint16_t>& known,
+                       std::vector<Eigen::Vector3d>& directions) const {
+    VoxelContent content;
+    const auto add_tow = [&](int steps, bool is_weft, int bin) {
+      if (steps == 0) return;
+      const auto [place, fresh] =
+          known.try_emplace({is_weft, bin}, static_cast<std::uint16_t>(directions.size()));
+      if (fresh) directions.push_back(direction(is_weft, bin));
+      content.portions.push_back({tow_phase, place->second, static_cast<double>(steps) / share_steps});
+    };
+    add_tow(r.warp, false, r.warp_direction);
+    add_tow(r.weft, true, r.weft_direction);
+    const int resin = share_steps - r.warp - r.weft;
+    if (resin > 0) content.portions.push_back({resin_phase, 0, static_cast<double>(resin) / share_steps});
+    if (content.portions.size() > 1)
+      content.normal = Eigen::Vector3d(r.normal[0], r.normal[1], r.normal[2]).normalized();
+    return content;
+  }
+
+  Eigen::Vector3d direction(bool is_weft, int bin) const {
+    const std::array<double, 2> along = is_weft ? cell_.place(0.0, 1.0) : cell_.place(1.0, 0.0);
+    return {along[0], along[1], std::tan((bin - direction_middle) * direction_step)};
+  }
+
+  const UnitCell& cell_;
+  SamplerOptions options_;
+  double thickness_;
+  std::array<int, 3> count_;
+  double step_, height_;
+  Eigen::Matrix3d edges_, to_reference_;
+  std::vector<std::vector<float>> share_;  // of warps and wefts
+};
+
+}  // namespace
+
+VoxelCell sample(const UnitCell& cell, double thickness, const SamplerOptions& options) {
+  return Sampler(cell, thickness, options).run();
+}
+
+}  // namespace heddle::mesoscale::solid

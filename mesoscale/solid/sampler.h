@@ -1,0 +1,31 @@
+#pragma once
+
+#include "mesoscale/cell.h"
+#include "mesoscale/solid/voxel_cell.h"
+
+namespace heddle::mesoscale::solid {
+
+/// What a voxel that two materials share is made of.
+enum class Mixing {
+  laminate,  ///< layers across the normal of the interface
+  dominant   ///< the larger of them: the staircase of a plain voxel mesh, kept for comparison
+};
+
+struct SamplerOptions {
+  int per_pitch = 32;  ///< voxels along one pitch
+  int layers = 32;     ///< voxels over the thickness
+  Mixing mixing = Mixing::laminate;
+};
+
+/// Phases of a sampled cell: stiffness is asked for in this order.
+inline constexpr std::uint16_t resin_phase = 0, tow_phase = 1;
+
+/// One repeat of a weave as voxels, on the sheared lattice where the cell is sheared. Volume shares come from
+/// 4 x 4 columns a voxel, each cut exactly along z (and are then rounded to 1/32); directions from the slope
+/// of the tow's centreline over the voxel, in steps of 0.5 degrees; normals from the gradient of the share.
+///
+/// @param thickness  of the fabric: crown to crown [m]
+/// @throws NumericalError  if the grid asks for more than 65535 different voxels
+VoxelCell sample(const UnitCell& cell, double thickness, const SamplerOptions& options);
+
+}  // namespace heddle::mesoscale::solid

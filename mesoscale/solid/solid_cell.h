@@ -1,0 +1,61 @@
+#pragma once
+
+#include <optional>
+#include <string>
+
+#include "mesoscale/cell_spec.h"
+#include "mesoscale/solid/homogenise.h"
+#include "mesoscale/solid/micromechanics.h"
+#include "mesoscale/solid/sampler.h"
+#include "mesoscale/solid/voxel_file.h"
+
+namespace heddle::mesoscale::solid {
+
+/// The solid part of a weave: cold, consolidated. SI units.
+struct SolidSpec {
+  SamplerOptions grid;
+  TowModel tow_model = TowModel::chamis;
+  double fibre_poisson = 0.22;        ///< of glass [-]; prior
+  IsotropicPhase resin{1.5e9, 0.40};  ///< solid polypropylene; prior
+  SolverOptions solver;
+};
+
+/// Ranges (keys of the configuration file below "solid").
+Problems check(const SolidSpec& spec);
+
+/// Two numbers that are the same in a balanced weave.
+struct BalancePair {
+  std::string first_name, second_name;  ///< "C11", "C22"
+  double first, second;                 ///< in SI
+  std::string unit;                     ///< in which they are shown: "MPa"
+  double per_unit;                      ///< times SI
+  double gap() const;                   ///< relative to the larger [-]
+};
+
+struct SolidResult {
+  std::array<int, 3> voxels{};
+  double thickness = 0.0;                  ///< of the cell [m]
+  std::optional<PlateStiffness> plate;     ///< of one ply with free faces; absent for a periodic voxel file
+  std::optional<PeriodicStiffness> stack;  ///< of plies on one another without end; absent for a voxel plate
+  std::optional<TransverseIsotropy> tow;   ///< of a weave: what its tows are made of
+  double tow_share = 0.0;                  ///< of a weave: volume of the tows [-]
+  std::size_t different_voxels = 0;
+  std::vector<BalancePair> balance;  ///< all that were compared
+};
+
+/// What a balanced weave has twice.
+std::vector<BalancePair> balance_of(const SolidResult& result);
+
+/// Those that differ by more than 0.1 %: from an unbalanced weave, or from axes in the wrong order.
+std::vector<BalancePair> imbalances(const SolidResult& result);
+
+/// The weave's consolidated state by sampled voxels, whatever state its forming laws are for.
+/// @throws InputError      if the weave or the specification has problems
+/// @throws NumericalError  as the solver
+SolidResult analyse(const WeaveSpec& weave, const SolidSpec& spec);
+
+/// A cell from a voxel file.
+/// @throws InputError  if check(spec) finds something
+SolidResult analyse(const VoxelFileSpec& spec, const SolverOptions& solver = {});
+
+}  // namespace heddle::mesoscale::solid

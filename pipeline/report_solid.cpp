@@ -1,0 +1,179 @@
+#include "pipeline/report_solid.h"
+
+#include <Eigen/LU>
+#include <cmath>
+#include <numbers>
+
+#include <fmt/format.h>
+
+#include "pipeline/report_figures.h"
+
+namespace heddle::pipeline {
+
+namespace {
+
+namespace solid = mesoscale::solid;
+
+// Modulus of a sheet pulled at an angle to the warp, from its in-plane stiffness [Pa].
+double modulus_along(const Eigen::Matrix3d& in_plane, double angle) {
+  const double c = std::cos(angle), s = std::sin(angle);
+  const Eigen::Vector3d stress(c * c, s * s, c * s);
+  return 1.0 / stress.dot(in_plane.inverse() * stress);
+}
+
+Series modulus_series(std::string name, const Eigen::Matrix3d& in_plane) {
+  Series series{std::move(name), {}, {}};
+  for (int degree = 0; degree <= 90; degree += 2) {
+    series.x.push_back(degree);
+    series.y.push_back(1e-9 * modulus_along(in_plane, degree * std::numbers::pi / 180.0));
+  }
+  return series;
+}
+
+// Of a stack of plies that is free to contract.
+Eigen::Matrix3d plane_stress(const solid::Matrix6& c) {
+  const solid::Matrix6 compliance = c.inverse();
+  constexpr std::array in{0, 1, 5};
+  Eigen::Matrix3d soft;
+  for (int i = 0; i < 3; ++i)
+    for (int j = 0; j < 3; ++j) soft(i, j) = compliance(in[i], in[j]);
+  return soft.inverse();
+}
+
+Eigen::Matrix3d membrane(const solid::SolidResult& s) {
+  return s.plate->a / s.thickness;
+}
+Eigen::Matrix3d bending(const solid::SolidResult& s) {
+  return 12.0 / std::pow(s.thickness, 3) * s.plate->d;
+}
+
+// A number that is nothing beside its neighbours is rounding, and said to be nothing.
+std::string entry(double value, double scale) {
+  return std::abs(value) < 1e-6 * scale ? "0" : significant(value, 4);
+}
+
+template <class Matrix>
+std::string table(const std::string& title, const Matrix& matrix, double factor, double scale) {
+  std::string out = fmt::format("<div><h3>{}</h3>\n<div class=\"scroll\"><table>\n", title);
+  for (Eigen::Index i = 0; i < matrix.rows(); ++i) {
+    out += "<tr>";
+    for (Eigen::Index j = 0; j < matrix.cols(); ++j)
+      out += fmt::format("<td class=\"number\">{}</td>", entry(factor * matrix(i, j), factor * scale));
+    out += "</tr>\n";
+  }
+  return out + "</table></div></div>\n";
+}
+
+std::string gigapascal(double modulus) {
+  return significant(1e-9 * modulus, 4) + " GPa";
+}
+
+void add_verdict(std::vector<Verdict>& out, const solid::SolverSummary& solver,
+                 const solid::HomogenisationChecks& checks, const std::string& what) {
+  if (!solver.converged) {
+    out.push_back(
+        {Tone::fails, fmt::format("The stiffness of the {} is not converged: {}.", what, solver.reason)});
+    return;
+  }
+  out.push_back(
+      {Tone::holds,
+       fmt::format("The stiffness of the {} converged in {} iterations; mean work and work of the means "
+                   "differ by {:.1e} of the energy.",
+                   what, solver.most_iterations(), checks.hill_mandel)});
+}
+
+}  // namespace
+
+Canvas stiffness_chart(const solid::SolidResult& s) {
+  LineChart chart;
+  chart.label = "Young's modulus against the direction of the pull";
+  chart.x = {"Direction against the warp", "°", Scale::linear, 0.0, 90.0};
+  chart.y = {"Young's modulus", "GPa", Scale::linear, 0.0, {}};
+  if (s.plate) {
+    chart.series.push_back(modulus_series("Stretched ply", membrane(s)));
+    chart.series.push_back(modulus_series("Bent ply", bending(s)));
+  }
+  if (s.stack)
+    chart.series.push_back(
+        modulus_series(s.plate ? "Stack of plies" : "Cell", plane_stress(s.stack->stiffness)));
+  chart.width = half_width;
+  chart.height = 300.0;
+  chart.label_room = 110.0;
+  return draw(chart);
+}
+
+std::vector<Condition> solid_facts(const solid::SolidResult& s) {
+  std::vector<Condition> facts{{"Voxels", fmt::format("{} × {} × {}", s.voxels[0], s.voxels[1], s.voxels[2])},
+                               {"Thickness", significant(1e3 * s.thickness, 4) + " mm"}};
+  if (s.tow) {
+    facts.push_back({"Tows, share of the volume", significant(100.0 * s.tow_share, 4) + " %"});
+    facts.push_back({"Tow, along and across",
+                     gigapascal(s.tow->axial_modulus) + ", " + gigapascal(s.tow->transverse_modulus)});
+    facts.push_back({"Tow, shear along and across",
+                     gigapascal(s.tow->axial_shear) + ", " + gigapascal(s.tow->transverse_shear)});
+  }
+  if (s.plate) {
+    const Eigen::Matrix3d soft = membrane(s).inverse(), bent = bending(s).inverse();
+    facts.push_back({"Ply stretched: E warp, E weft",
+                     gigapascal(1.0 / soft(0, 0)) + ", " + gigapascal(1.0 / soft(1, 1))});
+    facts.push_back({"Ply stretched: G, Poisson's ratio",
+                     gigapascal(1.0 / soft(2, 2)) + ", " + significant(-soft(1, 0) / soft(0, 0), 3)});
+    facts.push_back(
+        {"Ply bent: E warp, E weft", gigapascal(1.0 / bent(0, 0)) + ", " + gigapascal(1.0 / bent(1, 1))});
+  }
+  if (s.stack) {
+    const solid::Matrix6 soft = s.stack->stiffness.inverse();
+    facts.push_back({s.plate ? "Stack: E warp, E weft, E through" : "E along 1, 2, 3",
+                     fmt::format("{}, {}, {}", gigapascal(1.0 / soft(0, 0)), gigapascal(1.0 / soft(1, 1)),
+                                 gigapascal(1.0 / soft(2, 2)))});
+    facts.push_back({s.plate ? "Stack: G 12, 13, 23" : "G 12, 13, 23",
+                     fmt::format("{}, {}, {}", gigapascal(1.0 / soft(5, 5)), gigapascal(1.0 / soft(4, 4)),
+                                 gigapascal(1.0 / soft(3, 3)))});
+  }
+  return facts;
+}
+
+std::string stiffness_tables(const solid::SolidResult& s) {
+  std::string out;
+  if (s.plate) {
+    const double a = s.plate->a.norm(), d = s.plate->d.norm();
+    out += "<div class=\"pair\">\n" + table("A, N/mm (11, 22, 12)", s.plate->a, 1e-3, a) +
+           table("D, N mm", s.plate->d, 1e3, d) + "</div>\n";
+    // B is nothing beside what A and D would make of it, where the ply is the same upside down.
+    if (s.plate->b.norm() > 1e-6 * std::sqrt(a * d)) out += table("B, N", s.plate->b, 1.0, std::sqrt(a * d));
+  }
+  if (s.stack)
+    out += table(std::string(s.plate ? "C of a stack of plies" : "C") +
+                     ", MPa (11, 22, 33, 23, 13, 12; shear strains doubled)",
+                 s.stack->stiffness, 1e-6, s.stack->stiffness.norm());
+  return out;
+}
+
+std::vector<Verdict> solid_verdicts(const solid::SolidResult& s) {
+  std::vector<Verdict> out;
+  if (s.plate) add_verdict(out, s.plate->solver, s.plate->checks, "solid ply");
+  if (s.stack) add_verdict(out, s.stack->solver, s.stack->checks, s.plate ? "stack of plies" : "solid cell");
+  const auto found = imbalances(s);
+  for (const solid::BalancePair& pair : found)
+    out.push_back(
+        {Tone::attention,
+         fmt::format("{} is {} {u} and {} is {} {u}, {} % apart: the weave is not balanced, or the axes of "
+                     "the voxels are in the wrong order.",
+                     pair.first_name, significant(pair.per_unit * pair.first, 4), pair.second_name,
+                     significant(pair.per_unit * pair.second, 4), significant(100.0 * pair.gap(), 2),
+                     fmt::arg("u", pair.unit))});
+  if (found.empty()) {
+    std::string names;
+    for (const solid::BalancePair& pair : s.balance)
+      names += fmt::format("{}{} = {}", names.empty() ? "" : ", ", pair.first_name, pair.second_name);
+    out.push_back({Tone::holds, "The solid is balanced: " + names + " within 0.1 %."});
+  }
+  if (s.tow)
+    out.push_back(
+        {Tone::note,
+         "Constants of the solid are priors, not measured: solid.fibre_poisson, solid.resin_modulus, "
+         "solid.resin_poisson."});
+  return out;
+}
+
+}  // namespace heddle::pipeline

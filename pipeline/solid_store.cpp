@@ -1,0 +1,109 @@
+#include "pipeline/solid_store.h"
+
+#include <algorithm>
+
+namespace heddle::pipeline {
+
+namespace {
+
+namespace solid = mesoscale::solid;
+
+template <class Matrix>
+void write_matrix(Hdf5Writer& file, const std::string& path, const Matrix& matrix) {
+  file.write(path, std::span<const double>(matrix.data(), static_cast<std::size_t>(matrix.size())));
+}
+
+template <class Matrix>
+void read_matrix(const Hdf5Reader& file, const std::string& path, Matrix& matrix) {
+  const std::vector<double> values = file.doubles(path);
+  if (values.size() != static_cast<std::size_t>(matrix.size())) throw Hdf5Error(path + " has another size");
+  std::copy(values.begin(), values.end(), matrix.data());
+}
+
+template <class Part>
+void write_solution(Hdf5Writer& file, const std::string& group, const Part& part) {
+  file.write(group + "/converged", part.solver.converged ? 1 : 0);
+  file.write(group + "/reason", part.solver.reason);
+  file.write(group + "/iterations", std::span<const int>(part.solver.iterations));
+  file.write(group + "/residual", std::span<const double>(part.solver.residual));
+  file.write(group + "/checks", std::vector<double>{part.checks.hill_mandel, part.checks.asymmetry});
+  file.write(group + "/memory", static_cast<double>(part.memory));
+}
+
+template <class Part>
+void read_solution(const Hdf5Reader& file, const std::string& group, Part& part) {
+  part.solver.converged = file.integer(group + "/converged") != 0;
+  part.solver.reason = file.text(group + "/reason");
+  const std::vector<int> iterations = file.integers(group + "/iterations");
+  const std::vector<double> residual = file.doubles(group + "/residual"),
+                            checks = file.doubles(group + "/checks");
+  if (iterations.size() != solid::loads || residual.size() != solid::loads || checks.size() != 2)
+    throw Hdf5Error(group + " has another number of load cases");
+  std::copy(iterations.begin(), iterations.end(), part.solver.iterations.begin());
+  std::copy(residual.begin(), residual.end(), part.solver.residual.begin());
+  part.checks = {checks[0], checks[1]};
+  part.memory = static_cast<std::size_t>(file.number(group + "/memory"));
+}
+
+}  // namespace
+
+std::string bytes_of(const solid::SolidResult& result, const std::string& key) {
+  Hdf5Writer file;
+  file.write("/key", key);
+  file.write("/kind", "solid");
+  file.write("/voxels", std::span<const int>(result.voxels));
+  file.write("/thickness", result.thickness);
+  file.write("/tow_share", result.tow_share);
+  file.write("/different_voxels", static_cast<double>(result.different_voxels));
+  if (result.tow) {
+    const solid::TransverseIsotropy& t = *result.tow;
+    file.write("/tow", std::vector<double>{t.axial_modulus, t.transverse_modulus, t.axial_shear,
+                                           t.transverse_shear, t.axial_poisson});
+  }
+  if (result.plate) {
+    write_solution(file, "/plate", *result.plate);
+    write_matrix(file, "/plate/all", result.plate->all);
+    write_matrix(file, "/plate/upper", result.plate->upper);
+  }
+  if (result.stack) {
+    write_solution(file, "/stack", *result.stack);
+    write_matrix(file, "/stack/stiffness", result.stack->stiffness);
+    write_matrix(file, "/stack/voigt", result.stack->voigt);
+    write_matrix(file, "/stack/reuss", result.stack->reuss);
+  }
+  return file.finish();
+}
+
+solid::SolidResult read_solid_result(const Hdf5Reader& file) {
+  if (file.text("/kind") != "solid") throw Hdf5Error("is no result of the stage solid");
+  solid::SolidResult result;
+  const std::vector<int> voxels = file.integers("/voxels");
+  if (voxels.size() != 3) throw Hdf5Error("/voxels has another size");
+  std::copy(voxels.begin(), voxels.end(), result.voxels.begin());
+  result.thickness = file.number("/thickness");
+  result.tow_share = file.number("/tow_share");
+  result.different_voxels = static_cast<std::size_t>(file.number("/different_voxels"));
+  if (file.has("/tow")) {
+    const std::vector<double> t = file.doubles("/tow");
+    if (t.size() != 5) throw Hdf5Error("/tow has another size");
+    result.tow = solid::TransverseIsotropy{t[0], t[1], t[2], t[3], t[4]};
+  }
+  if (file.has("/plate")) {
+    solid::PlateStiffness& plate = result.plate.emplace();
+    read_solution(file, "/plate", plate);
+    read_matrix(file, "/plate/all", plate.all);
+    read_matrix(file, "/plate/upper", plate.upper);
+    plate.set_parts();
+  }
+  if (file.has("/stack")) {
+    solid::PeriodicStiffness& stack = result.stack.emplace();
+    read_solution(file, "/stack", stack);
+    read_matrix(file, "/stack/stiffness", stack.stiffness);
+    read_matrix(file, "/stack/voigt", stack.voigt);
+    read_matrix(file, "/stack/reuss", stack.reuss);
+  }
+  result.balance = solid::balance_of(result);
+  return result;
+}
+
+}  // namespace heddle::pipeline

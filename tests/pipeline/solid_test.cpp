@@ -1,0 +1,145 @@
+// The stiffness of the solid part from configuration to file, report and cache.
+#include <unistd.h>
+
+#include <Eigen/LU>
+#include <catch2/catch.hpp>
+#include <cmath>
+#include <filesystem>
+#include <nlohmann/json.hpp>
+
+#include "core/text_file.h"
+#include "pipeline/case.h"
+#include "pipeline/commands.h"
+#include "pipeline/report_solid.h"
+#include "pipeline/solid_store.h"
+
+using namespace heddle;
+namespace fs = std::filesystem;
+namespace solid = mesoscale::solid;
+
+namespace {
+
+struct Scratch {
+  Scratch() : path(fs::temp_directory_path() / ("heddle-solid-test-" + std::to_string(getpid()))) {
+    fs::create_directories(path);
+  }
+  ~Scratch() {
+    std::error_code ignored;  // a folder that stays behind is no failure of the test
+    fs::remove_all(path, ignored);
+  }
+  fs::path path;
+};
+
+pipeline::RunOptions options_for(const std::string& config, const fs::path& output,
+                                 std::vector<std::string> settings) {
+  pipeline::RunOptions options;
+  options.file = fs::path(HEDDLE_SOURCE_DIR) / "configs" / config;
+  options.output = output;
+  options.assignments = std::move(settings);
+  options.cache = HEDDLE_TEST_CACHE;
+  options.quiet = true;
+  options.print = false;
+  return options;
+}
+
+const std::vector<std::string> coarse{"solid={per_pitch: 8, layers: 6}"};
+
+solid::SolidResult sample() {
+  solid::SolidSpec spec;
+  spec.grid = {.per_pitch = 6, .layers = 4};
+  return solid::analyse(mesoscale::WeaveSpec{}, spec);
+}
+
+bool has(const std::vector<pipeline::Verdict>& verdicts, pipeline::Tone tone, const std::string& text) {
+  return std::any_of(verdicts.begin(), verdicts.end(), [&](const pipeline::Verdict& verdict) {
+    return verdict.tone == tone && verdict.text.find(text) != std::string::npos;
+  });
+}
+
+}  // namespace
+
+TEST_CASE("a weave with solid writes its stiffness, from the cache to the same bytes", "[pipeline][solid]") {
+  const Scratch scratch;
+  auto options = options_for("unit_cell.yaml", scratch.path / "first", coarse);
+  CHECK(pipeline::weave_case(options) == 0);
+  const std::string text = read_text_file(scratch.path / "first/mesoscale/stiffness.json");
+  const auto json = nlohmann::json::parse(text);
+  CHECK(json["order"] == std::vector<std::string>{"11", "22", "33", "23", "13", "12"});
+  CHECK(json["scaling"] == "voigt");
+  CHECK(json["voxels"] == std::vector<int>{16, 16, 6});
+  CHECK(json["iterations"].size() == 12);
+  CHECK(json["C_MPa"].size() == 6);
+  CHECK(json["C_MPa"][0][0].get<double>() == Approx(16000).epsilon(0.05));
+  CHECK(json["A_N_per_mm"][0][0].get<double>() == Approx(6200).epsilon(0.05));
+  CHECK(json["B_N"].size() == 3);
+  CHECK(json["D_N_mm"][0][0].get<double>() == Approx(55).epsilon(0.15));
+  const std::string report = read_text_file(scratch.path / "first/report.html");
+  CHECK(report.find("The solid part") != std::string::npos);
+  CHECK(report.find("The solid is balanced") != std::string::npos);
+
+  options.output = scratch.path / "second";
+  CHECK(pipeline::weave_case(options) == 0);
+  CHECK(read_text_file(scratch.path / "second/mesoscale/stiffness.json") == text);
+  const auto manifest = nlohmann::json::parse(read_text_file(scratch.path / "second/manifest.json"));
+  CHECK(manifest["stages"]["solid"]["reused"] == true);
+}
+
+TEST_CASE("a weave without solid writes no stiffness and says nothing of it", "[pipeline][solid]") {
+  const Scratch scratch;
+  CHECK(pipeline::weave_case(options_for("unit_cell.yaml", scratch.path / "plain", {})) == 0);
+  CHECK_FALSE(fs::exists(scratch.path / "plain/mesoscale/stiffness.json"));
+  CHECK(read_text_file(scratch.path / "plain/report.html").find("The solid part") == std::string::npos);
+}
+
+TEST_CASE("a voxel file is homogenised as a stack and as a plate", "[pipeline][solid]") {
+  const Scratch scratch;
+  CHECK(pipeline::weave_case(options_for("voxel_cell.yaml", scratch.path / "stack", {})) == 0);
+  const auto stack = nlohmann::json::parse(read_text_file(scratch.path / "stack/mesoscale/stiffness.json"));
+  CHECK(stack["C_MPa"][0][0].get<double>() == Approx(7854.094).epsilon(1e-5));
+  CHECK(stack["C_MPa"][2][2].get<double>() == Approx(5273.421).epsilon(1e-5));
+  CHECK(stack["C_MPa"][5][5].get<double>() ==
+        Approx(0.5 * 4561.944).epsilon(1e-5));  // Mandel's is twice Voigt's
+  CHECK(stack.count("A_N_per_mm") == 0);
+  CHECK(fs::exists(scratch.path / "stack/inputs"));  // the folder runs on its own
+}
+
+TEST_CASE("a solid result comes back from the cache's bytes bit for bit", "[pipeline][solid][cache]") {
+  const solid::SolidResult before = sample();
+  const std::string bytes = pipeline::bytes_of(before, "key");
+  const solid::SolidResult after = pipeline::read_solid_result(Hdf5Reader(bytes));
+  CHECK(pipeline::bytes_of(after, "key") == bytes);
+  CHECK(pipeline::stiffness_json(after) == pipeline::stiffness_json(before));
+  CHECK(pipeline::stiffness_tables(after) == pipeline::stiffness_tables(before));
+  CHECK(after.stack->reuss == before.stack->reuss);
+  CHECK(after.plate->upper == before.plate->upper);
+  CHECK(after.balance.size() == before.balance.size());
+}
+
+TEST_CASE("verdicts name moduli that should be equal and are not, with both numbers", "[pipeline][solid]") {
+  solid::SolidResult result = sample();
+  CHECK(has(pipeline::solid_verdicts(result), pipeline::Tone::holds, "C11 = C22, C13 = C23, G13 = G23"));
+  CHECK(has(pipeline::solid_verdicts(result), pipeline::Tone::note, "solid.resin_modulus"));
+  result.stack->stiffness(0, 0) = 5815e6;
+  result.stack->stiffness(1, 1) = 7531e6;
+  result.balance = solid::balance_of(result);
+  const auto verdicts = pipeline::solid_verdicts(result);
+  CHECK(has(verdicts, pipeline::Tone::attention, "C11 is 5815 MPa and C22 is 7531 MPa, 23 % apart"));
+  CHECK_FALSE(has(verdicts, pipeline::Tone::holds, "balanced"));
+  result.plate->solver.converged = false;
+  result.plate->solver.reason = "1000 iterations were not enough";
+  CHECK(has(pipeline::solid_verdicts(result), pipeline::Tone::fails, "1000 iterations were not enough"));
+}
+
+TEST_CASE("what the check of a solid case would run is said in a line", "[pipeline][solid]") {
+  const auto lines = [](const std::string& config, const std::vector<std::string>& settings) {
+    std::string text;
+    for (const std::string& line : pipeline::stage_lines(
+             pipeline::read_case(fs::path(HEDDLE_SOURCE_DIR) / "configs" / config, settings)))
+      text += line + "\n";
+    return text;
+  };
+  CHECK(lines("unit_cell.yaml", coarse)
+            .find("solid: stiffness of the consolidated weave, 8 voxels a pitch, 6 layers") !=
+        std::string::npos);
+  CHECK(lines("voxel_cell.yaml", {}) == "solid: stiffness of 64 x 64 x 64 voxels, periodic\n");
+}
