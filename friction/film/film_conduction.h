@@ -73,6 +73,11 @@ Sensitive point_share(const FilmConduction& film, std::size_t point, const Sensi
 Sensitive face_share(const FilmConduction& film, const Sensitive& time);
 Sensitive heating_rise(const FilmConduction& film, const Sensitive& time);
 
+/// Wide about every solid and melt, so that a number in the wrong unit is caught before the grid drowns in
+/// it.
+inline constexpr Bounds conductivity_range{.low = 1e-3, .high = 1e4, .low_open = false, .high_open = false};
+inline constexpr Bounds heat_capacity_range{.low = 1e3, .high = 1e9, .low_open = false, .high_open = false};
+
 template <>
 struct About<FilmConductionSpec> {
   static constexpr const char* id = "conduction";
@@ -81,23 +86,29 @@ struct About<FilmConductionSpec> {
       "constants of polypropylene, composite and steel as recalled; Carslaw & Jaeger 1959";
   static constexpr std::array fields{
       Field<FilmConductionSpec>{"film_conductivity", "W/(m K)", &FilmConductionSpec::film_conductivity,
-                                positive_range,
+                                conductivity_range,
                                 "Of the melt; polypropylene 0.17 to 0.20 W/(m K) (recalled)."},
       Field<FilmConductionSpec>{"film_heat_capacity", "J/(m^3 K)", &FilmConductionSpec::film_heat_capacity,
-                                positive_range, "Density times specific heat of the melt (recalled)."},
+                                heat_capacity_range, "Density times specific heat of the melt (recalled)."},
       Field<FilmConductionSpec>{"tool_conductivity", "W/(m K)", &FilmConductionSpec::tool_conductivity,
-                                positive_range, "Of the tool; steel 25 to 45 W/(m K) (recalled)."},
+                                conductivity_range, "Of the tool; steel 25 to 45 W/(m K) (recalled)."},
       Field<FilmConductionSpec>{"tool_heat_capacity", "J/(m^3 K)", &FilmConductionSpec::tool_heat_capacity,
-                                positive_range, "Density times specific heat of the tool (recalled)."},
+                                heat_capacity_range, "Density times specific heat of the tool (recalled)."},
       Field<FilmConductionSpec>{"ply_conductivity", "W/(m K)", &FilmConductionSpec::ply_conductivity,
-                                positive_range, "Through the ply, 0.3 to 0.4 W/(m K) (derived)."},
+                                conductivity_range, "Through the ply, 0.3 to 0.4 W/(m K) (derived)."},
       Field<FilmConductionSpec>{"ply_heat_capacity", "J/(m^3 K)", &FilmConductionSpec::ply_heat_capacity,
-                                positive_range, "Density times specific heat of the ply (derived)."},
+                                heat_capacity_range, "Density times specific heat of the ply (derived)."},
       Field<FilmConductionSpec>{
-          "ply_thickness", "m", &FilmConductionSpec::ply_thickness, positive_range,
+          "ply_thickness",
+          "m",
+          &FilmConductionSpec::ply_thickness,
+          {1e-6, 1.0, false, false},
           "Down to where no heat flows: one dense ply, or half of one cooled from both faces."},
       Field<FilmConductionSpec>{
-          "contact_resistance", "m^2 K/W", &FilmConductionSpec::contact_resistance, not_negative,
+          "contact_resistance",
+          "m^2 K/W",
+          &FilmConductionSpec::contact_resistance,
+          {0.0, 1.0, false, false},
           "Between tool and film; 0 m^2 K/W is perfect, 3e-4 to 2e-3 m^2 K/W a prior."}};
 };
 

@@ -225,7 +225,9 @@ RigRun run_machine(const Model& model, const FrictionTestRow& row, const Frictio
   }
   // A drive that never gets there would be a mistake of ours: the pull force then exceeds any friction.
   const double give_up =
-      10.0 * (rig.pull_length / row.velocity + row.velocity / machine.drive.acceleration) + 10.0;
+      10.0 * ((rig.pull_length + machine.drive.backlash + row.normal_force / machine.drive.stiffness) /
+                  row.velocity +
+              row.velocity / machine.drive.acceleration);
   for (double pulled = 0.0; state.displacement() < rig.pull_length; pulled += interval) {
     if (pulled > give_up)
       throw NumericalError(fmt::format("friction rig, row {}: the sample has moved {} m of {} m after {} s",

@@ -68,15 +68,29 @@ struct About<Drive> {
   static constexpr const char* equation = "m dv/dt = k (drawn - moved) + c (drawn speed - v) - friction";
   static constexpr const char* source = "paper, section 2: gear of 10:1 above 8.3 mm/s; all else is a prior";
   static constexpr std::array fields{
-      Field<Drive>{"stiffness", "N/m", &Drive::stiffness, positive_range,
+      Field<Drive>{"stiffness",
+                   "N/m",
+                   &Drive::stiffness,
+                   {1e3, 1e8, false, false},
                    "Between crosshead and sample holder (prior)."},
-      Field<Drive>{"holder_mass", "kg", &Drive::holder_mass, positive_range, "That hangs on it (prior)."},
-      Field<Drive>{"damping", "", &Drive::damping, not_negative, "Share of the critical damping (prior)."},
-      Field<Drive>{"acceleration", "m/s^2", &Drive::acceleration, positive_range,
+      Field<Drive>{
+          "holder_mass", "kg", &Drive::holder_mass, {0.1, 1e4, false, false}, "That hangs on it (prior)."},
+      Field<Drive>{"damping",
+                   "",
+                   &Drive::damping,
+                   {0.0, 100.0, false, false},
+                   "Share of the critical damping (prior)."},
+      Field<Drive>{"acceleration",
+                   "m/s^2",
+                   &Drive::acceleration,
+                   {1e-3, 1e4, false, false},
                    "Of the drawn end until it has its speed (prior)."},
       Field<Drive>{"own_speed", "m/s", &Drive::own_speed, not_negative,
                    "Largest speed without the gear; 8.3 mm/s in the paper."},
-      Field<Drive>{"backlash", "m", &Drive::backlash, not_negative,
+      Field<Drive>{"backlash",
+                   "m",
+                   &Drive::backlash,
+                   {0.0, 0.1, false, false},
                    "Of the gear, taken up before it pulls (prior)."}};
 };
 template <>
