@@ -10,12 +10,13 @@
 #include "friction/laws.h"
 #include "friction/rheology/rheology.h"
 #include "tests/friction/every_model.h"
+#include "tests/source_dir.h"
 
 using namespace heddle::friction;
 
 namespace {
 
-const std::filesystem::path folder = HEDDLE_SOURCE_DIR "/configs/effects";
+const std::filesystem::path folder = std::string(heddle::test::source_dir) + "/configs/effects";
 
 /// Top-level keys of the file and, below "parameters", name -> the rest of the line.
 struct EffectFile {
@@ -77,7 +78,8 @@ TEST_CASE("each effect has a file that names its numbers, units and off value", 
 }
 
 TEST_CASE("each law, rheology and effect says its equation and source in the theory", "[friction]") {
-  const std::string page = heddle::read_text_file(HEDDLE_SOURCE_DIR "/docs/theory/friction.md");
+  const std::string page =
+      heddle::read_text_file(std::string(heddle::test::source_dir) + "/docs/theory/friction.md");
   const auto told = [&]<class T>(const T&) {
     CAPTURE(About<T>::id);
     CHECK(page.find(fmt::format("| `{}` |", About<T>::id)) != std::string::npos);

@@ -1,12 +1,13 @@
 #include <catch2/catch.hpp>
 
 #include "friction/test_design.h"
+#include "tests/source_dir.h"
 
 using namespace heddle::friction;
 
 TEST_CASE("the paper's Table 2 reads as a baseline and eighteen other pulls", "[friction][design]") {
-  const TestDesign design =
-      read_test_design(HEDDLE_SOURCE_DIR "/tests/paper/data/friction_table2_design.csv");
+  const TestDesign design = read_test_design(std::string(heddle::test::source_dir) +
+                                             "/tests/paper/data/friction_table2_design.csv");
   const auto rows = one_at_a_time(design);
   REQUIRE(rows.size() == 1 + 4 + 6 + 5 + 2 + 4);
   CHECK(rows[0].velocity == Approx(16.6e-3));

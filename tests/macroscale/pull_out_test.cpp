@@ -7,6 +7,7 @@
 #include "friction/test_design.h"
 #include "macroscale/pull_out.h"
 #include "tests/macroscale/sample_fabric.h"
+#include "tests/source_dir.h"
 
 using namespace heddle::macroscale;
 using namespace heddle;
@@ -59,10 +60,10 @@ double gap(const friction::Model& model, const friction::FrictionTestRow& row) {
 
 TEST_CASE("law and finite elements agree within 1 % on every row of Tables 2 to 4, within 0.5 % for Coulomb",
           "[macroscale][friction][paper][slow]") {
-  auto rows = friction::one_at_a_time(
-      friction::read_test_design(std::string(HEDDLE_SOURCE_DIR) + "/configs/data/friction_table2.csv"));
-  const auto more =
-      friction::read_friction_table(std::string(HEDDLE_SOURCE_DIR) + "/configs/data/friction_table4.csv");
+  auto rows = friction::one_at_a_time(friction::read_test_design(std::string(heddle::test::source_dir) +
+                                                                 "/configs/data/friction_table2.csv"));
+  const auto more = friction::read_friction_table(std::string(heddle::test::source_dir) +
+                                                  "/configs/data/friction_table4.csv");
   rows.insert(rows.end(), more.begin(), more.end());
   REQUIRE(rows.size() == 26);
   for (const auto& row : rows) {

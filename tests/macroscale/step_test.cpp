@@ -11,6 +11,7 @@
 #include "macroscale/tool_file.h"
 #include "macroscale/tool_set.h"
 #include "tests/macroscale/sample_meshes.h"
+#include "tests/source_dir.h"
 
 using namespace heddle;
 using namespace heddle::macroscale;
@@ -19,7 +20,7 @@ using namespace heddle::test;
 namespace {
 
 constexpr double pi = std::numbers::pi;
-const std::filesystem::path shipped = std::filesystem::path(HEDDLE_SOURCE_DIR) / "configs/tools";
+const std::filesystem::path shipped = std::filesystem::path(source_dir) / "configs/tools";
 const double expected_chord_error = SurfaceResolution{}.chord_error;
 const Expectation expected{"tools.punch", {0.32, 0.32}, 0.07};
 
@@ -274,7 +275,7 @@ TEST_CASE("gmsh and CGAL stay behind the files that wall them off", "[macroscale
       {"#include <gmsh", {"macroscale/cad.cpp"}},
       {"#include <CGAL/",
        {"macroscale/mesh_check.cpp", "macroscale/mesh_distance.cpp", "macroscale/outline.cpp"}}};
-  const std::filesystem::path source = HEDDLE_SOURCE_DIR;
+  const std::filesystem::path source = source_dir;
   int seen = 0;
   for (const char* room : {"core", "friction", "mesoscale", "macroscale", "pipeline"}) {
     for (const auto& entry : std::filesystem::directory_iterator(source / room)) {

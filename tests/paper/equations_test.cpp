@@ -9,6 +9,8 @@
 #include <string>
 #include <vector>
 
+#include "tests/source_dir.h"
+
 namespace {
 
 struct Entry {
@@ -68,7 +70,7 @@ bool declares(const std::string& text, const std::string& symbol) {
 
 /// What is wrong with one row; empty where nothing is.
 std::string fault_of(const Entry& entry) {
-  const std::filesystem::path path = std::filesystem::path(HEDDLE_SOURCE_DIR) / entry.file;
+  const std::filesystem::path path = std::filesystem::path(heddle::test::source_dir) / entry.file;
   if (!std::filesystem::is_regular_file(path)) return entry.file + " does not exist";
   if (entry.symbol.empty()) return entry.file + " is named without a symbol";
   if (!declares(content_of(path), entry.symbol)) return entry.file + " does not hold " + entry.symbol;
@@ -79,7 +81,7 @@ std::string fault_of(const Entry& entry) {
 
 TEST_CASE("every equation of the paper is mapped to a file and a symbol that exist", "[paper][docs]") {
   const auto entries =
-      entries_of(content_of(std::filesystem::path(HEDDLE_SOURCE_DIR) / "docs/theory/equations.md"));
+      entries_of(content_of(std::filesystem::path(heddle::test::source_dir) / "docs/theory/equations.md"));
   std::set<int> mapped;
   for (const Entry& entry : entries) {
     CHECK(fault_of(entry) == "");

@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "friction/calibrate.h"
+#include "tests/source_dir.h"
 
 using namespace heddle::friction;
 
@@ -17,7 +18,7 @@ namespace {
 
 using Form = ToolTemperatureShift::Form;
 
-const std::string data_folder = std::string(HEDDLE_SOURCE_DIR) + "/tests/paper/data/";
+const std::string data_folder = std::string(heddle::test::source_dir) + "/tests/paper/data/";
 
 std::vector<FrictionTestRow> table4() {
   return read_friction_table(data_folder + "friction_table4.csv");
@@ -130,7 +131,7 @@ TEST_CASE("Table 4 is as printed", "[paper]") {
 
 TEST_CASE("the table shipped with the configurations is Table 4", "[paper]") {
   const auto shipped =
-      read_friction_table(std::string(HEDDLE_SOURCE_DIR) + "/configs/data/friction_table4.csv");
+      read_friction_table(std::string(heddle::test::source_dir) + "/configs/data/friction_table4.csv");
   const auto rows = table4();
   REQUIRE(shipped.size() == rows.size());
   for (std::size_t i = 0; i < rows.size(); ++i) {

@@ -7,11 +7,12 @@
 
 #include "core/text_file.h"
 #include "pipeline/case.h"
+#include "tests/source_dir.h"
 
 namespace heddle::test {
 
 inline const std::filesystem::path bad_folder =
-    std::filesystem::path(HEDDLE_SOURCE_DIR) / "tests/pipeline/bad";
+    std::filesystem::path(heddle::test::source_dir) / "tests/pipeline/bad";
 
 /// Names of the small bad configurations, without ".yaml".
 inline std::vector<std::string> bad_file_names() {

@@ -11,6 +11,7 @@
 #include "pipeline/stage_store.h"
 #include "pipeline/stamping_record.h"
 #include "tests/pipeline/scratch.h"
+#include "tests/source_dir.h"
 
 using namespace heddle;
 using namespace heddle::test;
@@ -49,7 +50,7 @@ TEST_CASE(
   const Scratch scratch;
   warm(scratch / "cache");
   // A copy of the shipped files, which the test may touch.
-  fs::copy(fs::path(HEDDLE_SOURCE_DIR) / "configs", scratch / "configs", fs::copy_options::recursive);
+  fs::copy(fs::path(source_dir) / "configs", scratch / "configs", fs::copy_options::recursive);
   const fs::path config = scratch / "configs/thermostamping.yaml",
                  table = scratch / "configs/data/friction_table4.csv";
   const auto run = [&](const std::string& name, const std::vector<std::string>& settings) {
@@ -201,7 +202,7 @@ TEST_CASE("every key of the configuration is in the key of a stage, but for thos
 }
 
 TEST_CASE("the key of a stage moves with what it reads and with nothing else", "[pipeline][cache]") {
-  const fs::path file = fs::path(HEDDLE_SOURCE_DIR) / "configs/thermostamping.yaml";
+  const fs::path file = fs::path(source_dir) / "configs/thermostamping.yaml";
   const auto keys = [&](const std::vector<std::string>& settings) {
     const pipeline::Case a_case = pipeline::read_case(file, settings);
     return std::array{pipeline::inputs_of(ChainStage::mesoscale, a_case).key(),
@@ -244,7 +245,7 @@ TEST_CASE("the key of a stage moves with what it reads and with nothing else", "
 }
 
 TEST_CASE("what only the rig reads moves the key of the rig and not that of the law", "[pipeline][cache]") {
-  const fs::path file = fs::path(HEDDLE_SOURCE_DIR) / "configs/friction_test.yaml";
+  const fs::path file = fs::path(source_dir) / "configs/friction_test.yaml";
   const auto keys = [&](const std::vector<std::string>& settings) {
     const pipeline::Case a_case = pipeline::read_case(file, settings);
     return std::array{pipeline::inputs_of(ChainStage::friction, a_case).key(),
@@ -267,7 +268,7 @@ TEST_CASE("what only the rig reads moves the key of the rig and not that of the 
 }
 
 TEST_CASE("the build hashes the sources as they stand", "[pipeline][cache]") {
-  const fs::path root = HEDDLE_SOURCE_DIR;
+  const fs::path root = source_dir;
   std::vector<std::string> files;
   for (const auto& entry : fs::recursive_directory_iterator(root / "friction"))
     if (entry.path().extension() == ".h" || entry.path().extension() == ".cpp")

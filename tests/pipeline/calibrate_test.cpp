@@ -11,13 +11,14 @@
 #include "core/text_file.h"
 #include "friction/calibrate.h"
 #include "pipeline/stages.h"
+#include "tests/source_dir.h"
 
 using namespace heddle;
 namespace fs = std::filesystem;
 
 namespace {
 
-const fs::path source = HEDDLE_SOURCE_DIR;
+const fs::path source = heddle::test::source_dir;
 const fs::path table4 = source / "configs/data/friction_table4.csv";
 
 class Scratch {

@@ -11,6 +11,7 @@
 #include "core/problem.h"
 #include "pipeline/case_list.h"
 #include "tests/pipeline/scratch.h"
+#include "tests/source_dir.h"
 
 using namespace heddle;
 using namespace heddle::test;
@@ -18,7 +19,7 @@ using pipeline::CaseStatus;
 
 namespace {
 
-const fs::path config = fs::path(HEDDLE_SOURCE_DIR) / "configs/thermostamping.yaml";
+const fs::path config = fs::path(source_dir) / "configs/thermostamping.yaml";
 
 std::vector<std::string> quick(const std::string& more) {
   return with(with(with(small_stamping(), "process.steps=2"), "friction={law: coulomb, coefficient: 0.3}"),
@@ -88,7 +89,7 @@ TEST_CASE("a record that cannot be read counts as none, and says so", "[pipeline
   const Scratch scratch;
   warm(scratch / "cache");
   const std::vector<pipeline::ListedCase> cases{
-      {"cell", fs::path(HEDDLE_SOURCE_DIR) / "configs/unit_cell.yaml", {}}};
+      {"cell", fs::path(source_dir) / "configs/unit_cell.yaml", {}}};
   const pipeline::CaseListOptions options{
       .folder = scratch / "list", .cache = scratch / "cache", .quiet = true};
   CHECK_FALSE(pipeline::run_case_list(cases, options)[0].run_before);

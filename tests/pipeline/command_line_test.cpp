@@ -4,6 +4,7 @@
 #include <cstdlib>
 
 #include "core/problem.h"
+#include "tests/source_dir.h"
 
 using namespace heddle::pipeline;
 
@@ -86,7 +87,7 @@ TEST_CASE("each subcommand reaches its function", "[pipeline][command_line]") {
   CHECK(record.check.file == "a.yaml");
   CHECK(call({"check", "--reference"}, record) == 8);
   CHECK(record.check.reference);
-  const std::string data = HEDDLE_SOURCE_DIR "/configs/data/friction_table4.csv";
+  const std::string data = std::string(heddle::test::source_dir) + "/configs/data/friction_table4.csv";
   CHECK(call({"calibrate", "a.yaml", "--data", data, "-o", "out/x"}, record) == 9);
   CHECK(record.called == "calibrate");
   CHECK(record.calibrate.run.file == "a.yaml");

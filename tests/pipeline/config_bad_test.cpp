@@ -9,6 +9,7 @@
 #include "bad_files.h"
 #include "core/text_file.h"
 #include "pipeline/case.h"
+#include "tests/source_dir.h"
 
 using namespace heddle;
 
@@ -283,7 +284,8 @@ TEST_CASE("every small bad file stands in the table above", "[pipeline][config]"
 
 // The words a newcomer meets first. A change of wording is a change of these files, to be read by a person.
 TEST_CASE("the commonest mistakes are answered in the words of tests/pipeline/golden", "[pipeline][config]") {
-  const std::filesystem::path golden = std::filesystem::path(HEDDLE_SOURCE_DIR) / "tests/pipeline/golden";
+  const std::filesystem::path golden =
+      std::filesystem::path(heddle::test::source_dir) / "tests/pipeline/golden";
   int files = 0;
   for (const auto& entry : std::filesystem::directory_iterator(golden)) {
     if (entry.path().extension() != ".yaml") continue;

@@ -13,6 +13,7 @@
 #include "pipeline/case.h"
 #include "pipeline/config_reference.h"
 #include "pipeline/friction_keys.h"
+#include "tests/source_dir.h"
 
 using namespace heddle;
 using pipeline::Case;
@@ -21,7 +22,7 @@ using pipeline::read_case_text;
 
 namespace {
 
-const std::filesystem::path source = HEDDLE_SOURCE_DIR;
+const std::filesystem::path source = heddle::test::source_dir;
 const std::filesystem::path configs = source / "configs";
 
 std::string text_of(const std::filesystem::path& file) {

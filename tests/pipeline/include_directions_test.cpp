@@ -5,9 +5,11 @@
 #include <string>
 #include <vector>
 
+#include "tests/source_dir.h"
+
 namespace {
 
-const std::filesystem::path source = HEDDLE_SOURCE_DIR;
+const std::filesystem::path source = heddle::test::source_dir;
 
 /// What a room may include besides itself: whole rooms, or single headers.
 const std::map<std::string, std::vector<std::string>> allowed{

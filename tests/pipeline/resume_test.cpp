@@ -14,6 +14,7 @@
 #include "pipeline/stage_keys.h"
 #include "pipeline/stamping_record.h"
 #include "tests/pipeline/scratch.h"
+#include "tests/source_dir.h"
 
 using namespace heddle;
 using namespace heddle::test;
@@ -35,7 +36,7 @@ class Program {
       : errors_(scratch / (folder + ".stderr")), start_(std::chrono::steady_clock::now()) {
     std::vector<std::string> words{HEDDLE_PROGRAM,
                                    "run",
-                                   std::string(HEDDLE_SOURCE_DIR) + "/configs/thermostamping.yaml",
+                                   std::string(source_dir) + "/configs/thermostamping.yaml",
                                    "-o",
                                    (scratch / folder).string(),
                                    "--quiet"};
@@ -283,9 +284,8 @@ TEST_CASE("a run that fails keeps its state, its worst nodes, its energies and a
 TEST_CASE("a faulty interval between checkpoints is bad input", "[pipeline][resume][wrong input]") {
   const Scratch scratch;
   const std::string command = std::string("HEDDLE_CACHE=off HEDDLE_CHECKPOINT_SECONDS=soon ") +
-                              HEDDLE_PROGRAM + " run " + HEDDLE_SOURCE_DIR +
-                              "/configs/thermostamping.yaml -o " + (scratch / "run").string() + " 2>" +
-                              (scratch / "said").string();
+                              HEDDLE_PROGRAM + " run " + source_dir + "/configs/thermostamping.yaml -o " +
+                              (scratch / "run").string() + " 2>" + (scratch / "said").string();
   const int status = std::system(command.c_str());
   CHECK(WEXITSTATUS(status) == pipeline::exit_bad_input);
   CHECK_THAT(pipeline::read_file(scratch / "said"), Catch::Contains("HEDDLE_CHECKPOINT_SECONDS = soon"));

@@ -10,12 +10,13 @@
 
 #include "bad_files.h"
 #include "core/text_file.h"
+#include "tests/source_dir.h"
 
 using namespace heddle;
 
 namespace {
 
-const std::filesystem::path source = HEDDLE_SOURCE_DIR;
+const std::filesystem::path source = heddle::test::source_dir;
 
 /// The names of all rules in some source text, and the places where one is written so that it cannot be read.
 struct RuleNames {

@@ -13,6 +13,7 @@
 #include "pipeline/outputs.h"
 #include "pipeline/stages.h"
 #include "scratch.h"
+#include "tests/source_dir.h"
 
 using namespace heddle;
 using namespace heddle::test;
@@ -27,7 +28,7 @@ const std::vector<std::string> small = {"blank.spacing=20 mm", "process.steps=12
 pipeline::RunOptions options_for(const std::string& config, const fs::path& output,
                                  std::vector<std::string> settings) {
   pipeline::RunOptions options;
-  options.file = fs::path(HEDDLE_SOURCE_DIR) / "configs" / config;
+  options.file = fs::path(source_dir) / "configs" / config;
   options.output = output;
   options.assignments = std::move(settings);
   options.quiet = true;
@@ -183,7 +184,7 @@ TEST_CASE("what only a command can break is refused under its rule", "[pipeline]
   CHECK(rule_broken_by([&] { pipeline::friction_case(options_for("unit_cell.yaml", scratch / "x", {})); }) ==
         "case.part");
   // A configuration with real contact pressure has a cell; one put together by hand may have none.
-  pipeline::Case by_hand = pipeline::read_case(fs::path(HEDDLE_SOURCE_DIR) / "configs/friction_test.yaml");
+  pipeline::Case by_hand = pipeline::read_case(fs::path(source_dir) / "configs/friction_test.yaml");
   by_hand.cell.reset();
   by_hand.friction->contact_pressure = macroscale::ContactPressure::real;
   CHECK(rule_broken_by([&] { pipeline::run_friction_stage(by_hand, nullptr); }) ==

@@ -10,6 +10,7 @@
 #include "pipeline/commands.h"
 #include "pipeline/outputs.h"
 #include "pipeline/stage_keys.h"
+#include "tests/source_dir.h"
 #include "tool_settings.h"
 
 /// What tests of whole runs share.
@@ -49,7 +50,7 @@ inline std::vector<std::string> with(std::vector<std::string> base, const std::s
 
 inline pipeline::RunOptions options_for(const fs::path& output, std::vector<std::string> settings) {
   pipeline::RunOptions options;
-  options.file = fs::path(HEDDLE_SOURCE_DIR) / "configs" / "thermostamping.yaml";
+  options.file = fs::path(heddle::test::source_dir) / "configs" / "thermostamping.yaml";
   options.output = output;
   options.assignments = std::move(settings);
   options.quiet = true;

@@ -12,6 +12,7 @@
 #include "pipeline/commands.h"
 #include "pipeline/report_solid.h"
 #include "pipeline/solid_store.h"
+#include "tests/source_dir.h"
 
 using namespace heddle;
 namespace fs = std::filesystem;
@@ -33,7 +34,7 @@ struct Scratch {
 pipeline::RunOptions options_for(const std::string& config, const fs::path& output,
                                  std::vector<std::string> settings) {
   pipeline::RunOptions options;
-  options.file = fs::path(HEDDLE_SOURCE_DIR) / "configs" / config;
+  options.file = fs::path(heddle::test::source_dir) / "configs" / config;
   options.output = output;
   options.assignments = std::move(settings);
   options.cache = HEDDLE_TEST_CACHE;
@@ -134,7 +135,7 @@ TEST_CASE("what the check of a solid case would run is said in a line", "[pipeli
   const auto lines = [](const std::string& config, const std::vector<std::string>& settings) {
     std::string text;
     for (const std::string& line : pipeline::stage_lines(
-             pipeline::read_case(fs::path(HEDDLE_SOURCE_DIR) / "configs" / config, settings)))
+             pipeline::read_case(fs::path(heddle::test::source_dir) / "configs" / config, settings)))
       text += line + "\n";
     return text;
   };

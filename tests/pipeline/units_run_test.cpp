@@ -7,13 +7,14 @@
 #include "core/text_file.h"
 #include "pipeline/case.h"
 #include "pipeline/commands.h"
+#include "tests/source_dir.h"
 
 using namespace heddle;
 namespace fs = std::filesystem;
 
 namespace {
 
-const fs::path folder = fs::path(HEDDLE_SOURCE_DIR) / "tests/pipeline/units";
+const fs::path folder = fs::path(heddle::test::source_dir) / "tests/pipeline/units";
 
 pipeline::Case read(const char* name, const std::vector<std::string>& settings = {}) {
   return pipeline::read_case(folder / name, settings);

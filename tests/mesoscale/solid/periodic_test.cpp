@@ -7,6 +7,7 @@
 #include "mesoscale/solid/voxel_cell.h"
 #include "mesoscale/solid/voxel_file.h"
 #include "sample_cells.h"
+#include "tests/source_dir.h"
 
 using namespace heddle::mesoscale::solid;
 using namespace heddle::test;
@@ -122,7 +123,7 @@ TEST_CASE("layers on an oblique lattice are a laminate across the true normal", 
 }
 
 TEST_CASE("a voxel woven cell has the stiffness that FANS gives it", "[solid][periodic][reference]") {
-  const std::filesystem::path data = std::filesystem::path(HEDDLE_SOURCE_DIR) / "tests/mesoscale/data";
+  const std::filesystem::path data = std::filesystem::path(source_dir) / "tests/mesoscale/data";
   VoxelFileSpec spec{data / "weave_64.raw", {64, 64, 64},    {10.78e-3, 10.78e-3, 1.65e-3},
                      AxisOrder::x_fastest,  Faces::periodic, {}};
   spec.phases[0] = {1667e6, 557e6};
