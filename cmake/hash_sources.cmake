@@ -3,7 +3,7 @@
 #   cmake -DROOT=... -DOUTPUT=... -DBUILD="compiler and flags" -P hash_sources.cmake
 # Files are listed when this runs, not when the build was configured: a header that is new counts at once.
 cmake_minimum_required(VERSION 3.25)
-set(stage_files case.h case.cpp stages.h stages.cpp friction_keys.h friction_keys.cpp solid_keys.h
+set(stage_files case.h case.cpp case_rules.h case_rules.cpp case_settings.h case_settings.cpp stages.h stages.cpp friction_keys.h friction_keys.cpp solid_keys.h
     solid_keys.cpp solid_stage.h solid_stage.cpp solid_store.h solid_store.cpp friction_store.h
     friction_store.cpp friction_rig_stage.h friction_rig_stage.cpp stage_store.h stage_store.cpp stamping_record.h
     stamping_record.cpp)

@@ -11,8 +11,8 @@
 #include "friction/rig/machine.h"
 #include "macroscale/stamping.h"
 #include "mesoscale/cell_spec.h"
-#include "pipeline/calibrate_keys.h"
 #include "mesoscale/solid/solid_cell.h"
+#include "pipeline/calibrate_keys.h"
 #include "pipeline/config_reader.h"
 
 namespace heddle::pipeline {
