@@ -14,6 +14,7 @@
 #include "mesoscale/solid/solid_cell.h"
 #include "pipeline/calibrate_keys.h"
 #include "pipeline/config_reader.h"
+#include "pipeline/discover_keys.h"
 
 namespace heddle::pipeline {
 
@@ -62,6 +63,7 @@ struct Case {
   bool grid_error = false;                                ///< the stamping is run once more on a coarser grid
   std::optional<OrientationStudySpec> orientation_study;  ///< runs the stamping once an angle
   std::optional<CalibrateSpec> calibrate;                 ///< what `heddle calibrate` is to fit
+  std::optional<DiscoverSpec> discover;                   ///< what `heddle discover` is to look for
   std::vector<std::string> notes;                         ///< keys not used, and values that are assumed
   Settings settings;                                      ///< every key behind the above
 };

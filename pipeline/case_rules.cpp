@@ -236,6 +236,7 @@ Problems check_between_keys(const Case& a_case, const ReadConfig& config) {
     append(problems, check_design(a_case.friction_test->design));
     if (a_case.friction_machine) append(problems, check_machine(a_case));
   }
+  if (a_case.discover) append(problems, check_discover(*a_case.discover, config.settings));
   if (a_case.calibrate) append(problems, check_calibrate(*a_case.calibrate, config.settings));
   if (a_case.stamping) {
     Problems of_stamping = macroscale::check(*a_case.stamping);

@@ -280,6 +280,7 @@ Case case_of(const ReadConfig& config, const std::filesystem::path& folder) {
       result.orientation_study->friction = settings.many("orientation_study.friction");
   }
   if (runs(Stage::calibrate)) result.calibrate = calibrate_of(settings);
+  if (runs(Stage::discover)) result.discover = discover_of(settings);
   result.notes = config.notes;
   result.settings = settings;
   return result;

@@ -67,6 +67,20 @@ void add_export(CLI::App& program, ExportOptions& options) {
   add_assignments(*command, options.run.assignments);
 }
 
+void add_discover(CLI::App& program, DiscoverOptions& options) {
+  CLI::App* command =
+      add_run(program, "discover", "What the model misses in measured coupons, by name", options.run);
+  command->add_option("--data", options.data, "Table of coupons (CSV); FILE.yaml beside it tells of the rig")
+      ->required()
+      ->check(CLI::ExistingFile);
+  command->add_option("--effect", options.own_effects, "Effect file beside the library. May be repeated")
+      ->expected(1)
+      ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll)
+      ->check(CLI::ExistingFile);
+  command->add_option("--seed", options.seed, "Of every draw (default: discover.seed)")
+      ->check(CLI::Range(0, 2000000000));
+}
+
 /// HEDDLE_CACHE names the folder of the cache; `off` switches it off.
 std::filesystem::path cache_folder() {
   const char* asked = std::getenv("HEDDLE_CACHE");
@@ -99,6 +113,7 @@ int dispatch(const std::vector<std::string>& arguments, const Commands& commands
   RunOptions friction_options;
   CheckOptions check_options;
   CalibrateOptions calibrate_options;
+  DiscoverOptions discover_options;
   ExportOptions export_options;
   const CLI::App* run =
       add_run(program, "run", "The whole chain: weave, friction, stamped part", run_options);
@@ -110,6 +125,7 @@ int dispatch(const std::vector<std::string>& arguments, const Commands& commands
       ->add_option("--data", calibrate_options.data, "Table of coupons (CSV)")
       ->required()
       ->check(CLI::ExistingFile);
+  add_discover(program, discover_options);
   add_export(program, export_options);
 
   try {
@@ -122,7 +138,8 @@ int dispatch(const std::vector<std::string>& arguments, const Commands& commands
     program.exit(error, std::cout, std::cerr);
     return exit_bad_input;
   }
-  for (RunOptions* options : {&run_options, &weave_options, &friction_options, &calibrate_options.run}) {
+  for (RunOptions* options : {&run_options, &weave_options, &friction_options, &calibrate_options.run,
+                              &discover_options.run}) {
     options->cache = cache_folder();
     options->checkpoint_interval = checkpoint_interval(options->checkpoint_interval);
   }
@@ -131,6 +148,7 @@ int dispatch(const std::vector<std::string>& arguments, const Commands& commands
   if (weave->parsed()) return commands.weave(weave_options);
   if (friction->parsed()) return commands.friction(friction_options);
   if (program.got_subcommand("export")) return commands.export_law(export_options);
+  if (program.got_subcommand("discover")) return commands.discover(discover_options);
   return commands.calibrate(calibrate_options);
 }
 

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <filesystem>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -36,6 +37,13 @@ struct CalibrateOptions {
   std::filesystem::path data;  ///< measured coupons
 };
 
+struct DiscoverOptions {
+  RunOptions run;
+  std::filesystem::path data;                      ///< measured coupons
+  std::vector<std::filesystem::path> own_effects;  ///< effect files beside the library
+  std::optional<int> seed;
+};
+
 struct ExportOptions {
   RunOptions run;      ///< file: a configuration, or the folder of a run or a calibration
   std::string target;  ///< "abaqus" or "csv"
@@ -58,6 +66,7 @@ int run_case(const RunOptions& options);              ///< the whole chain
 int weave_case(const RunOptions& options);            ///< unit cell only
 int friction_case(const RunOptions& options);         ///< friction test only
 int calibrate_case(const CalibrateOptions& options);  ///< numbers of the law from measured coupons
+int discover_case(const DiscoverOptions& options);    ///< what the model misses in measured coupons
 int export_case(const ExportOptions& options);        ///< the friction law as other programs take it
 int check_file(const CheckOptions& options);          ///< every problem, or the stages and notes
 

@@ -374,6 +374,7 @@ class ConfigReader {
     if (stages.count(Stage::stamping) > 0) stages.insert(Stage::grid_error);
     if (given("friction_test")) stages.insert(Stage::friction_test);
     if (given("calibrate")) stages.insert(Stage::calibrate);
+    if (given("discover")) stages.insert(Stage::discover);
     if (given("friction") || stages.size() > 1) stages.insert(Stage::friction);
     const bool voxels = config_.root.find_path("cell.voxels") != nullptr;
     const bool weave =
@@ -439,6 +440,8 @@ class ConfigReader {
         return " for the grid error";
       case Stage::calibrate:
         return " by `heddle calibrate`";
+      case Stage::discover:
+        return " by `heddle discover`";
       case Stage::always:
         return "";
       case Stage::cell:

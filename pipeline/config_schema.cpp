@@ -8,6 +8,7 @@
 
 #include "core/units.h"
 #include "pipeline/calibrate_keys.h"
+#include "pipeline/discover_keys.h"
 #include "pipeline/friction_keys.h"
 #include "pipeline/solid_keys.h"
 
@@ -409,6 +410,7 @@ std::vector<Key> all_keys() {
   append(keys, artefact_keys());
   append(keys, study_keys());
   append(keys, calibrate_keys());
+  append(keys, discover_keys());
   return keys;
 }
 

@@ -37,7 +37,8 @@ enum class Stage {
   stamping,
   grid_error,
   orientation_study,
-  calibrate
+  calibrate,
+  discover
 };
 
 /// One key of the configuration. The table of these is the one source of validation, defaults and the

@@ -16,6 +16,7 @@ int main(int argument_count, char** arguments) {
                                       .friction = pipeline::friction_case,
                                       .check = pipeline::check_file,
                                       .calibrate = pipeline::calibrate_case,
+                                      .discover = pipeline::discover_case,
                                       .export_law = pipeline::export_case});
   } catch (const InputError& error) {
     std::cerr << error.what();

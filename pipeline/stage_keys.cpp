@@ -115,7 +115,8 @@ bool reads(ChainStage stage, const Key& key) {
     case Stage::grid_error:
       return stage == ChainStage::grid_error;
     case Stage::orientation_study:  // a list of runs, each with its own blank.orientation
-    case Stage::calibrate:          // a command of its own
+    case Stage::calibrate:          // commands of their own
+    case Stage::discover:
       return false;
   }
   throw std::logic_error("no such stage");

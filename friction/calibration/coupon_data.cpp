@@ -198,28 +198,50 @@ CouponRow row_of(const Pull& stretch) {
   }
   row.pull.measured_force = force;
   row.pull.normal_force = load;
+  row.load_measured =
+      std::ranges::all_of(stretch, [](const Line* line) { return line->measured_normal_force.has_value(); });
   if (slip > 0.0) row.slip = slip;
   return row;
 }
 
-/// The lines of a pull in stretches of slip that are even in their logarithm; of one, the steady half.
-std::vector<Pull> stretches_of(const Pull& pull, int count) {
-  if (pull.size() == 1) return {pull};
-  double longest = 0.0, shortest = 1e300;
-  for (const Line* line : pull) {
-    longest = std::max(longest, *line->displacement);
-    if (*line->displacement > 0.0) shortest = std::min(shortest, *line->displacement);
+/// Shortest and longest slip, of those above 0.
+struct SlipRange {
+  double shortest = 1e300, longest = 0.0;
+  void take(const Line& line) {
+    longest = std::max(longest, line.displacement.value_or(0.0));
+    if (line.displacement.value_or(0.0) > 0.0) shortest = std::min(shortest, *line.displacement);
   }
+  bool is_one() const { return !(longest > shortest); }
+};
+
+SlipRange slips_of(const Pull& pull) {
+  SlipRange range;
+  for (const Line* line : pull) range.take(*line);
+  return range;
+}
+
+/// The slips of all pulls that are histories.
+SlipRange slips_of(const std::vector<Pull>& pulls) {
+  SlipRange range;
+  for (const Pull& pull : pulls)
+    if (pull.size() > 1)
+      for (const Line* line : pull) range.take(*line);
+  return range;
+}
+
+/// The lines of a pull in stretches of slip that are even in their logarithm, some of them empty; of one, the
+/// steady half.
+std::vector<Pull> stretches_of(const Pull& pull, int count, const SlipRange& range) {
+  if (pull.size() == 1) return {pull};
   std::vector<Pull> stretches(static_cast<std::size_t>(count));
+  const double longest = slips_of(pull).longest;
   for (const Line* line : pull) {
     const double slip = *line->displacement;
     if (count == 1 ? slip < 0.5 * longest : slip <= 0.0) continue;
-    const bool one = count == 1 || !(longest > shortest);
-    const double share = one ? 0.0 : std::log(slip / shortest) / std::log(longest / shortest);
-    const auto at = static_cast<std::size_t>(std::clamp(share * count, 0.0, count - 1.0));
-    stretches[at].push_back(line);
+    const bool one = count == 1 || range.is_one();
+    const double share = one ? 0.0 : std::log(slip / range.shortest) / std::log(range.longest / range.shortest);
+    stretches[static_cast<std::size_t>(std::clamp(share * count, 0.0, count - 1.0))].push_back(line);
   }
-  std::erase_if(stretches, [](const Pull& stretch) { return stretch.empty(); });
   return stretches;
 }
 
@@ -345,13 +367,19 @@ CouponData parse_coupons(std::string_view text, const std::string& file, const C
   Numbering<Condition> conditions_seen;
   Numbering<std::string> days;
   std::size_t histories = 0;
-  for (const Pull& pull : pulls_of(lines)) {
+  const std::vector<Pull> pulls = pulls_of(lines);
+  const SlipRange all_slips = slips_of(pulls);
+  for (const Pull& pull : pulls) {
     if (!check_history(reader, pull)) continue;
     if (pull.size() > 1) ++histories;
     const Line& first = *pull.front();
     if (days.of(first.day) == data.days.size()) data.days.push_back(first.day);
-    for (const Pull& stretch : stretches_of(pull, reduction.stretches)) {
-      CouponRow row = row_of(stretch);
+    const std::vector<Pull> stretches =
+        stretches_of(pull, reduction.stretches, reduction.same_stretches ? all_slips : slips_of(pull));
+    for (std::size_t k = 0; k < stretches.size(); ++k) {
+      if (stretches[k].empty()) continue;
+      CouponRow row = row_of(stretches[k]);
+      row.stretch = static_cast<int>(k);
       row.condition = conditions_seen.of(condition_of(first));
       row.day = days.of(first.day);
       row.sample = data.samples.size();

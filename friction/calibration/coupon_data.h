@@ -18,7 +18,9 @@ struct CouponRow {
   std::size_t condition = 0;        ///< rows with one number were meant to be alike
   std::size_t sample = 0;           ///< rows with one number come from one piece of fabric
   std::size_t day = 0;
-  int line = 0;  ///< of the first line of the table behind it
+  int stretch = 0;             ///< which of CouponReduction::stretches it is
+  bool load_measured = false;  ///< the normal force is a measured one, not the nominal
+  int line = 0;                ///< of the first line of the table behind it
 };
 
 /// Measured friction coupons. Rows of a sample follow each other.
@@ -36,6 +38,9 @@ struct CouponData {
 struct CouponReduction {
   /// Stretches of slip of one pull, even in their logarithm, that are kept apart; 1: the steady half alone.
   int stretches = 1;
+  /// Cut every pull at the same slips, from the table's shortest to its longest, so that stretches of
+  /// different pulls can be compared. Else each pull between its own ends.
+  bool same_stretches = false;
   int faces = 2;  ///< faces of the fabric that slide: 2 between plates, 1 under a sled
 };
 

@@ -1,0 +1,228 @@
+#include "pipeline/discover/map_fit.h"
+
+#include <Eigen/Eigenvalues>
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numbers>
+
+#include "core/problem.h"
+
+namespace heddle::discover {
+
+namespace {
+
+constexpr double infinity = std::numeric_limits<double>::infinity();
+
+/// Coordinates of one hypothesis with their bounds.
+struct Room {
+  Eigen::VectorXd low, high;
+  Eigen::VectorXd into(const Eigen::VectorXd& z) const { return z.cwiseMax(low).cwiseMin(high); }
+};
+
+Room room_of(const std::vector<const Unknown*>& numbers) {
+  const auto count = static_cast<Eigen::Index>(numbers.size());
+  Room room{Eigen::VectorXd(count), Eigen::VectorXd(count)};
+  for (Eigen::Index k = 0; k < count; ++k) {
+    const auto [low, high] = numbers[static_cast<std::size_t>(k)]->prior.bounds();
+    room.low[k] = low;
+    room.high[k] = high;
+  }
+  return room;
+}
+
+/// Residuals and their slopes by differences: central, one-sided at a bound.
+class Slopes {
+ public:
+  Slopes(const ForwardModel& model, const Whitened& data, const Hypothesis& hypothesis, const Room& room,
+         double step)
+      : model_(model), data_(data), hypothesis_(hypothesis), room_(room), step_(step) {}
+
+  Eigen::VectorXd residual(const Eigen::VectorXd& z) {
+    ++evaluations_;
+    return data_.residual(model_.predict(trial_at(model_, hypothesis_, z)));
+  }
+
+  Eigen::MatrixXd jacobian(const Eigen::VectorXd& z, const Eigen::VectorXd& here) {
+    Eigen::MatrixXd slopes(here.size(), z.size());
+    for (Eigen::Index k = 0; k < z.size(); ++k) {
+      Eigen::VectorXd moved = z;
+      const double h = z[k] + step_ <= room_.high[k] ? step_ : -step_;
+      moved[k] = z[k] + h;
+      slopes.col(k) = (residual(moved) - here) / h;
+    }
+    return slopes;
+  }
+  int evaluations() const { return evaluations_; }
+
+ private:
+  const ForwardModel& model_;
+  const Whitened& data_;
+  const Hypothesis& hypothesis_;
+  const Room& room_;
+  double step_;
+  int evaluations_ = 0;
+};
+
+/// The step that minimises the quadratic within the bounds: coordinates that run into one are held there.
+Eigen::VectorXd bounded_step(const Eigen::MatrixXd& curvature, const Eigen::VectorXd& gradient,
+                             const Eigen::VectorXd& z, const Room& room) {
+  const Eigen::Index count = z.size();
+  std::vector<bool> held(static_cast<std::size_t>(count), false);
+  Eigen::VectorXd step = Eigen::VectorXd::Zero(count);
+  for (Eigen::Index round = 0; round <= count; ++round) {
+    Eigen::MatrixXd matrix = curvature;
+    Eigen::VectorXd right = -gradient;
+    for (Eigen::Index k = 0; k < count; ++k) {
+      if (!held[static_cast<std::size_t>(k)]) continue;
+      right -= matrix.col(k) * step[k];
+      matrix.row(k).setZero();
+      matrix.col(k).setZero();
+      matrix(k, k) = 1.0;
+      right[k] = step[k];
+    }
+    step = matrix.ldlt().solve(right);
+    bool inside = true;
+    for (Eigen::Index k = 0; k < count; ++k) {
+      const double to = z[k] + step[k];
+      if (held[static_cast<std::size_t>(k)] || (to >= room.low[k] && to <= room.high[k])) continue;
+      step[k] = (to < room.low[k] ? room.low[k] : room.high[k]) - z[k];
+      held[static_cast<std::size_t>(k)] = true;
+      inside = false;
+    }
+    if (inside) break;
+  }
+  return step;
+}
+
+/// Laplace: the Gaussian about the unbounded optimum of the local quadratic, times each coordinate's mass
+/// between its bounds.
+void add_evidence(MapFit& fit, const std::vector<const Unknown*>& numbers, const Room& room) {
+  const Eigen::Index count = fit.z.size();
+  double log_prior_mass = 0.0;
+  for (const Unknown* number : numbers) log_prior_mass += number->prior.log_mass();
+  const Eigen::MatrixXd curvature =
+      fit.jacobian.transpose() * fit.jacobian + Eigen::MatrixXd::Identity(count, count);
+  const Eigen::LLT<Eigen::MatrixXd> root(curvature);
+  fit.covariance = root.solve(Eigen::MatrixXd::Identity(count, count));
+  const Eigen::VectorXd gradient = fit.jacobian.transpose() * fit.residual + fit.z;
+  const Eigen::VectorXd to_optimum = -(fit.covariance * gradient);
+  const double log_determinant = 2.0 * root.matrixLLT().diagonal().array().log().sum();
+  fit.log_evidence = -0.5 * (fit.chi2 + fit.z.squaredNorm() + gradient.dot(to_optimum)) -
+                     0.5 * log_determinant - log_prior_mass;
+  for (Eigen::Index k = 0; k < count; ++k) {
+    const double sd = std::sqrt(fit.covariance(k, k)), centre = fit.z[k] + to_optimum[k];
+    fit.log_evidence += log_normal_mass((room.low[k] - centre) / sd, (room.high[k] - centre) / sd);
+  }
+}
+
+}  // namespace
+
+Whitened::Whitened(const Observations& observations)
+    : value_(observations.value), root_(observations.covariance) {
+  if (root_.info() != Eigen::Success)
+    throw NumericalError("discover: the covariance of the observations is not positive definite");
+}
+
+Eigen::VectorXd Whitened::residual(const Eigen::VectorXd& predicted) const {
+  return root_.matrixL().solve(predicted - value_);
+}
+
+Eigen::MatrixXd Whitened::operator()(const Eigen::MatrixXd& columns) const {
+  return root_.matrixL().solve(columns);
+}
+
+std::vector<const Unknown*> free_numbers(const ForwardModel& model, const Hypothesis& hypothesis) {
+  std::vector<const Unknown*> numbers;
+  const auto add = [&](const std::vector<Unknown>& all) {
+    for (const Unknown& number : all)
+      if (number.prior.is_free()) numbers.push_back(&number);
+  };
+  add(model.baseline);
+  for (const std::size_t effect : hypothesis) add(model.candidates[effect].numbers);
+  return numbers;
+}
+
+Trial trial_at(const ForwardModel& model, const Hypothesis& hypothesis, const Eigen::VectorXd& z) {
+  Eigen::Index at = 0;
+  const auto values = [&](const std::vector<Unknown>& numbers) {
+    Eigen::VectorXd all(static_cast<Eigen::Index>(numbers.size()));
+    for (std::size_t k = 0; k < numbers.size(); ++k) {
+      const Prior& prior = numbers[k].prior;
+      all[static_cast<Eigen::Index>(k)] = prior.value_at(prior.is_free() ? z[at++] : 0.0);
+    }
+    return all;
+  };
+  Trial trial{.baseline = values(model.baseline), .effects = {}};
+  for (const std::size_t effect : hypothesis)
+    trial.effects.emplace_back(effect, values(model.candidates[effect].numbers));
+  return trial;
+}
+
+MapFit map_fit(const ForwardModel& model, const Whitened& data, const Hypothesis& hypothesis,
+               const Eigen::VectorXd& start, const FitOptions& options) {
+  const std::vector<const Unknown*> numbers = free_numbers(model, hypothesis);
+  const Room room = room_of(numbers);
+  Slopes slopes(model, data, hypothesis, room, options.step);
+  MapFit fit;
+  fit.hypothesis = hypothesis;
+  fit.z = room.into(start);
+  fit.residual = slopes.residual(fit.z);
+  fit.log_evidence = -infinity;
+  if (!fit.residual.allFinite()) return fit;
+  const auto cost_of = [](const Eigen::VectorXd& residual, const Eigen::VectorXd& z) {
+    return 0.5 * (residual.squaredNorm() + z.squaredNorm());
+  };
+  double cost = cost_of(fit.residual, fit.z);
+  double damping = 0.0;
+  for (int iteration = 0; iteration < options.iterations_max && !fit.converged; ++iteration) {
+    fit.jacobian = slopes.jacobian(fit.z, fit.residual);
+    if (!fit.jacobian.allFinite()) break;
+    const Eigen::VectorXd gradient = fit.jacobian.transpose() * fit.residual + fit.z;
+    Eigen::MatrixXd curvature = fit.jacobian.transpose() * fit.jacobian;
+    curvature.diagonal().array() += 1.0;
+    for (int trial = 0; trial < 12; ++trial) {
+      Eigen::MatrixXd damped = curvature;
+      damped.diagonal() *= 1.0 + damping;
+      const Eigen::VectorXd step = bounded_step(damped, gradient, fit.z, room);
+      const double expected = -gradient.dot(step) - 0.5 * step.dot(curvature * step);
+      if (expected < options.tolerance) {
+        fit.converged = true;
+        break;
+      }
+      const Eigen::VectorXd z = room.into(fit.z + step);
+      const Eigen::VectorXd residual = slopes.residual(z);
+      const double next = residual.allFinite() ? cost_of(residual, z) : infinity;
+      if (next < cost - 0.01 * expected) {
+        damping = cost - next > 0.5 * expected ? 0.2 * damping : damping;
+        if (damping < 1e-4) damping = 0.0;
+        cost = next;
+        fit.z = z;
+        fit.residual = residual;
+        break;
+      }
+      damping = std::max(10.0 * damping, 0.03);
+    }
+  }
+  fit.chi2 = fit.residual.squaredNorm();
+  fit.trial = trial_at(model, hypothesis, fit.z);
+  if (!fit.converged) fit.jacobian = slopes.jacobian(fit.z, fit.residual);
+  fit.evaluations = slopes.evaluations();
+  if (fit.jacobian.allFinite()) add_evidence(fit, numbers, room);
+  return fit;
+}
+
+MapFit best_fit(const ForwardModel& model, const Whitened& data, const Hypothesis& hypothesis,
+                const std::vector<Eigen::VectorXd>& starts, const FitOptions& options) {
+  MapFit best;
+  int evaluations = 0;
+  for (const Eigen::VectorXd& start : starts) {
+    MapFit fit = map_fit(model, data, hypothesis, start, options);
+    evaluations += fit.evaluations;
+    if (best.z.size() == 0 || fit.log_evidence > best.log_evidence) best = std::move(fit);
+  }
+  best.evaluations = evaluations;
+  return best;
+}
+
+}  // namespace heddle::discover

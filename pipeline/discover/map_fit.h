@@ -1,0 +1,64 @@
+#pragma once
+
+#include <Eigen/Cholesky>
+#include <Eigen/Core>
+#include <vector>
+
+#include "pipeline/discover/hypothesis.h"
+
+namespace heddle::discover {
+
+/// Observations with the square root of their covariance, taken once.
+class Whitened {
+ public:
+  /// @throws NumericalError  if the covariance is not positive definite
+  explicit Whitened(const Observations& observations);
+  Eigen::Index size() const { return value_.size(); }
+  /// L^-1 (predicted - measured) with the covariance L L^T.
+  Eigen::VectorXd residual(const Eigen::VectorXd& predicted) const;
+  /// L^-1 of columns of changes.
+  Eigen::MatrixXd operator()(const Eigen::MatrixXd& columns) const;
+  const Eigen::VectorXd& value() const { return value_; }
+
+ private:
+  Eigen::VectorXd value_;
+  Eigen::LLT<Eigen::MatrixXd> root_;
+};
+
+/// The most probable numbers of one hypothesis, and how much the data speak for it.
+struct MapFit {
+  Hypothesis hypothesis;
+  Eigen::VectorXd z;         ///< coordinates: the free numbers of the baseline, then of each effect
+  Trial trial;               ///< the same as values
+  Eigen::VectorXd residual;  ///< whitened, of the observations alone
+  Eigen::MatrixXd jacobian;  ///< d residual / d z
+  Eigen::MatrixXd covariance;  ///< of z, Laplace
+  double chi2 = 0.0;           ///< |residual|^2
+  /// ln of the evidence: Int exp(-|residual|^2/2) prior(z) dz, without the part of the observations'
+  /// covariance that all hypotheses share; Laplace's approximation, with each coordinate's mass between its
+  /// bounds.
+  double log_evidence = 0.0;
+  bool converged = false;
+  int evaluations = 0;  ///< predictions asked for
+};
+
+/// Numbers of a hypothesis that are free, in the order of MapFit::z.
+std::vector<const Unknown*> free_numbers(const ForwardModel& model, const Hypothesis& hypothesis);
+Trial trial_at(const ForwardModel& model, const Hypothesis& hypothesis, const Eigen::VectorXd& z);
+
+struct FitOptions {
+  int iterations_max = 40;
+  double tolerance = 1e-4;  ///< of the expected gain in -ln posterior at which a search stops
+  double step = 1e-4;       ///< of z in a difference
+};
+
+/// Gauss-Newton within the bounds, damped after Levenberg and Marquardt, on residuals and prior together.
+/// @param start  of z; where the prediction is not finite there, `converged` is false and the evidence -inf
+MapFit map_fit(const ForwardModel& model, const Whitened& data, const Hypothesis& hypothesis,
+               const Eigen::VectorXd& start, const FitOptions& options = {});
+
+/// The best of several starts.
+MapFit best_fit(const ForwardModel& model, const Whitened& data, const Hypothesis& hypothesis,
+                const std::vector<Eigen::VectorXd>& starts, const FitOptions& options = {});
+
+}  // namespace heddle::discover

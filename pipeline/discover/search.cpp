@@ -1,0 +1,165 @@
+#include "pipeline/discover/search.h"
+
+#include <tbb/parallel_for.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <set>
+
+namespace heddle::discover {
+
+namespace {
+
+/// ln prior probability of a hypothesis: ids share evenly, choices of one id share its part.
+class HypothesisPrior {
+ public:
+  HypothesisPrior(const ForwardModel& model, const SearchOptions& options)
+      : model_(model), options_(options) {
+    std::set<std::string> ids;
+    for (const Candidate& candidate : model.candidates) ids.insert(candidate.id);
+    ids_ = static_cast<double>(ids.size());
+  }
+  double of(const Hypothesis& hypothesis) const {
+    double log_prior = hypothesis.empty()       ? std::log(options_.no_effect)
+                       : hypothesis.size() == 1 ? std::log(options_.one_effect / ids_)
+                                                : std::log(options_.two_effects / (0.5 * ids_ * (ids_ - 1.0)));
+    for (const std::size_t effect : hypothesis) log_prior += model_.candidates[effect].log_weight;
+    return log_prior;
+  }
+
+ private:
+  const ForwardModel& model_;
+  const SearchOptions& options_;
+  double ids_ = 0.0;
+};
+
+/// Starts of a single effect: its strongest shape, and the strongest of the other sign or, failing that, the
+/// middle of its shapes.
+std::vector<Eigen::VectorXd> starts_of(const ForwardModel& model, const MapFit& baseline,
+                                       const std::vector<Signature>& signatures) {
+  if (signatures.empty()) return {baseline.z};  // a choice without numbers
+  std::vector<const Signature*> order;
+  for (const Signature& signature : signatures) order.push_back(&signature);
+  std::ranges::stable_sort(order, std::greater{}, [](const Signature* s) { return std::abs(s->score); });
+  std::vector<Eigen::VectorXd> starts{start_from(model, baseline, *order.front())};
+  for (const Signature* other : order)
+    if (other->shape != order.front()->shape) {
+      starts.push_back(start_from(model, baseline, *other));
+      break;
+    }
+  return starts;
+}
+
+/// The numbers of two single fits side by side.
+Eigen::VectorXd joined(const MapFit& baseline, const MapFit& first, const MapFit& second) {
+  const Eigen::Index base = baseline.z.size();
+  const Eigen::VectorXd of_first = first.z.tail(first.z.size() - base),
+                        of_second = second.z.tail(second.z.size() - base);
+  Eigen::VectorXd z(base + of_first.size() + of_second.size());
+  z << first.z.head(base), of_first, of_second;
+  return z;
+}
+
+std::vector<Hypothesis> pairs_to_try(const std::vector<Scored>& singles, const std::vector<Signature>& signatures,
+                                     const ForwardModel& model, const SearchOptions& options) {
+  std::vector<std::size_t> by_evidence, by_score;
+  for (const Scored& single : singles) by_evidence.push_back(single.fit.hypothesis[0]);
+  for (const Signature& signature : signatures) by_score.push_back(signature.effect);
+  std::ranges::stable_sort(by_score, std::greater{}, [&](std::size_t effect) {
+    const auto of = std::ranges::find(signatures, effect, &Signature::effect);
+    return std::abs(of->score);
+  });
+  by_evidence.resize(std::min(by_evidence.size(), options.pairs_of));
+  by_score.resize(std::min(by_score.size(), options.partners));
+  std::set<Hypothesis> pairs;
+  for (const std::size_t a : by_evidence)
+    for (const auto* list : {&by_evidence, &by_score})
+      for (const std::size_t b : *list)
+        if (model.candidates[a].id != model.candidates[b].id) pairs.insert({std::min(a, b), std::max(a, b)});
+  return {pairs.begin(), pairs.end()};
+}
+
+}  // namespace
+
+const Scored* SearchResult::find(const Hypothesis& hypothesis) const {
+  const auto at = std::ranges::find_if(
+      scored, [&](const Scored& one) { return one.fit.hypothesis == hypothesis; });
+  return at == scored.end() ? nullptr : &*at;
+}
+
+double SearchResult::best_gain() const {
+  double best = -std::numeric_limits<double>::infinity();
+  for (const Scored& one : scored)
+    if (!one.fit.hypothesis.empty()) best = std::max(best, one.fit.log_evidence - log_evidence_none);
+  return best;
+}
+
+void give_probabilities(std::vector<Scored>& scored) {
+  std::ranges::stable_sort(scored, std::greater{},
+                           [](const Scored& one) { return one.fit.log_evidence + one.log_prior; });
+  const double top = scored.front().fit.log_evidence + scored.front().log_prior;
+  double sum = 0.0;
+  for (Scored& one : scored) sum += one.probability = std::exp(one.fit.log_evidence + one.log_prior - top);
+  for (Scored& one : scored) one.probability /= sum;
+}
+
+bool earns_its_place(const SearchResult& result, const Scored& pair, double bayes_factor) {
+  if (!std::isfinite(pair.fit.log_evidence)) return false;
+  for (const std::size_t member : pair.fit.hypothesis) {
+    const Scored* alone = result.find({member});
+    if (alone != nullptr && pair.fit.log_evidence - alone->fit.log_evidence <= bayes_factor) return false;
+  }
+  return true;
+}
+
+SearchResult search(const ForwardModel& model, const Whitened& data, const SearchOptions& options) {
+  SearchResult result;
+  const HypothesisPrior prior(model, options);
+  const auto free_baseline = std::ssize(free_numbers(model, {}));
+  result.baseline = map_fit(model, data, {}, Eigen::VectorXd::Zero(free_baseline));
+  result.log_evidence_none = result.baseline.log_evidence;
+  if (!std::isfinite(result.log_evidence_none)) return result;
+  const BesideBaseline beside(result.baseline.jacobian);
+  result.gap = beside.gap_of(result.baseline.residual);
+
+  const std::size_t count = model.candidates.size();
+  std::vector<std::vector<Signature>> signatures(count);
+  std::vector<Scored> singles(count);
+  tbb::parallel_for(std::size_t{0}, count, [&](std::size_t effect) {
+    signatures[effect] = signatures_of(model, data, result.baseline, beside, result.gap, effect);
+    singles[effect] = {
+        .fit = best_fit(model, data, {effect},
+                        starts_of(model, result.baseline, signatures[effect])),
+        .log_prior = prior.of({effect})};
+  });
+  for (const std::vector<Signature>& of : signatures)
+    if (const Signature* best = strongest(of)) result.signatures.push_back(*best);
+  std::vector<MapFit> by_effect;
+  for (const Scored& single : singles) by_effect.push_back(single.fit);
+  std::erase_if(singles, [](const Scored& one) { return !std::isfinite(one.fit.log_evidence); });
+  std::ranges::stable_sort(singles, std::greater{},
+                           [](const Scored& one) { return one.fit.log_evidence + one.log_prior; });
+
+  result.scored = singles;
+  result.scored.push_back({.fit = result.baseline, .log_prior = prior.of({})});
+  // A pair can only win where a single effect does better than none.
+  if (result.best_gain() > options.bayes_factor) {
+    std::vector<Hypothesis> pairs = pairs_to_try(singles, result.signatures, model, options);
+    std::erase_if(pairs, [&](const Hypothesis& pair) {
+      return !std::isfinite(by_effect[pair[0]].log_evidence) || !std::isfinite(by_effect[pair[1]].log_evidence);
+    });
+    std::vector<Scored> fitted(pairs.size());
+    tbb::parallel_for(std::size_t{0}, pairs.size(), [&](std::size_t k) {
+      const MapFit &first = by_effect[pairs[k][0]], &second = by_effect[pairs[k][1]];
+      fitted[k] = {.fit = map_fit(model, data, pairs[k], joined(result.baseline, first, second)),
+                   .log_prior = prior.of(pairs[k])};
+    });
+    for (Scored& pair : fitted)
+      if (earns_its_place(result, pair, options.bayes_factor)) result.scored.push_back(std::move(pair));
+  }
+  give_probabilities(result.scored);
+  return result;
+}
+
+}  // namespace heddle::discover

@@ -1,0 +1,74 @@
+#include "pipeline/discover/stability.h"
+
+#include <Eigen/Cholesky>
+#include <algorithm>
+#include <numeric>
+
+#include "pipeline/discover/random.h"
+
+namespace heddle::discover {
+
+namespace {
+
+/// A hypothesis as a linear model of its observations about z = 0.
+struct Linear {
+  Eigen::VectorXd residual;  ///< at z = 0, not whitened
+  Eigen::MatrixXd slopes;
+  double log_prior = 0.0;
+};
+
+/// ln of the marginal likelihood of some rows: residual ~ N(0, C + J J^T).
+double log_evidence(const Linear& linear, const Eigen::LLT<Eigen::MatrixXd>& root,
+                    const std::vector<Eigen::Index>& rows) {
+  const Eigen::VectorXd residual = root.matrixL().solve(Eigen::VectorXd(linear.residual(rows)));
+  const Eigen::MatrixXd slopes =
+      root.matrixL().solve(Eigen::MatrixXd(linear.slopes(rows, Eigen::all)));
+  const Eigen::LLT<Eigen::MatrixXd> curvature(slopes.transpose() * slopes +
+                                              Eigen::MatrixXd::Identity(slopes.cols(), slopes.cols()));
+  const Eigen::VectorXd along = slopes.transpose() * residual;
+  return -0.5 * (residual.squaredNorm() - along.dot(curvature.solve(along))) -
+         curvature.matrixLLT().diagonal().array().log().sum() + linear.log_prior;
+}
+
+}  // namespace
+
+double stability_of(const SearchResult& result, const std::vector<CouponCell>& cells,
+                    const Eigen::MatrixXd& covariance, std::uint64_t seed, int halves, std::size_t rivals) {
+  const Eigen::LLT<Eigen::MatrixXd> whole(covariance);
+  std::vector<Linear> linear;
+  std::size_t best = 0;
+  bool found = false;
+  for (const Scored& one : result.scored) {
+    if (linear.size() == rivals && found) break;
+    if (!found && !one.fit.hypothesis.empty()) {
+      best = linear.size();
+      found = true;
+    }
+    Linear next{.residual = whole.matrixL() * (one.fit.residual - one.fit.jacobian * one.fit.z),
+                .slopes = whole.matrixL() * one.fit.jacobian,
+                .log_prior = one.log_prior};
+    linear.push_back(std::move(next));
+  }
+  if (!found || cells.size() < 4) return 1.0;
+  Random random(seed);
+  std::vector<std::size_t> order(cells.size());
+  std::iota(order.begin(), order.end(), std::size_t{0});
+  int won = 0;
+  for (int half = 0; half < halves; ++half) {
+    random.shuffle(order);
+    std::vector<std::size_t> chosen(order.begin(), order.begin() + std::ssize(order) / 2);
+    std::ranges::sort(chosen);
+    const std::vector<Eigen::Index> rows = rows_of(cells, chosen);
+    const Eigen::LLT<Eigen::MatrixXd> root(Eigen::MatrixXd(covariance(rows, rows)));
+    std::vector<double> evidence;
+    for (const Linear& one : linear) evidence.push_back(log_evidence(one, root, rows));
+    // Half of the data may well not tell the effect from none: that is no other name.
+    double other = -1e300;
+    for (std::size_t k = 0; k < linear.size(); ++k)
+      if (k != best && !result.scored[k].fit.hypothesis.empty()) other = std::max(other, evidence[k]);
+    if (evidence[best] >= other) ++won;
+  }
+  return static_cast<double>(won) / halves;
+}
+
+}  // namespace heddle::discover

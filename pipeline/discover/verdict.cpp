@@ -1,0 +1,166 @@
+#include "pipeline/discover/verdict.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <set>
+
+namespace heddle::discover {
+
+namespace {
+
+/// Families by what the reader would call them; a set within one gets its name.
+struct Family {
+  const char* name;
+  std::vector<const char*> ids;
+};
+const std::vector<Family>& families() {
+  static const std::vector<Family> all{
+      {"a tool-temperature effect", {"tool_temperature_film", "tool_temperature_shift", "solidification"}},
+      {"a load effect",
+       {"pressure_dependent_area", "adhesion", "boundary_lubrication", "load_cell_offset", "nonuniform_pressure"}},
+      {"an effect at the start of the pull",
+       {"static_peak", "dwell_ageing", "drive_backlash", "sliding_evolution", "wear"}},
+      {"a time or slip history effect",
+       {"sliding_evolution", "wear", "film_squeeze_out", "dwell_ageing", "static_peak", "normal_force_relaxation"}},
+      {"a speed effect", {"stick_slip", "shear_heating", "viscosity_plateau", "boundary_lubrication",
+                          "shear_rate", "inertia"}}};
+  return all;
+}
+
+std::string family_of(const std::vector<std::string>& ids) {
+  if (ids.size() < 2) return "";
+  for (const Family& family : families())
+    if (std::ranges::all_of(ids, [&](const std::string& id) {
+          return std::ranges::find(family.ids, id) != family.ids.end();
+        }))
+      return family.name;
+  return "";
+}
+
+/// Ids of the fewest hypotheses with effects whose share of the probability reaches `wanted`.
+std::vector<std::string> set_of(const ForwardModel& model, const SearchResult& result, double wanted) {
+  double total = 0.0;
+  for (const Scored& one : result.scored)
+    if (!one.fit.hypothesis.empty()) total += one.probability;
+  std::vector<std::string> ids;
+  double sum = 0.0;
+  for (const Scored& one : result.scored) {
+    if (one.fit.hypothesis.empty()) continue;
+    for (const std::size_t effect : one.fit.hypothesis) {
+      const std::string& id = model.candidates[effect].id;
+      if (std::ranges::find(ids, id) == ids.end()) ids.push_back(id);
+    }
+    sum += one.probability;
+    if (sum >= wanted * total) break;
+  }
+  return ids;
+}
+
+double squared_gap(const MapFit& fit) {
+  return BesideBaseline(fit.jacobian).gap_of(fit.residual).squaredNorm();
+}
+
+double top_evidence(const std::vector<Shape>& shapes) {
+  return shapes.empty() ? 0.0 : shapes.front().log_evidence;
+}
+
+std::string names(const ForwardModel& model, const Hypothesis& hypothesis) {
+  std::vector<std::string> ids;
+  for (const std::size_t effect : hypothesis) ids.push_back(model.candidates[effect].id);
+  return fmt::format("{}", fmt::join(ids, " and "));
+}
+
+}  // namespace
+
+const char* in_words(Answer answer) {
+  constexpr std::array words{"NO_GAP", "NAMED", "ONE_OF", "NAMED_INCOMPLETE", "UNKNOWN"};
+  return words[static_cast<std::size_t>(answer)];
+}
+
+double chi_square_tail(double chi2, double freedom) {
+  const double scale = 2.0 / (9.0 * freedom);
+  return normal_probability(-(std::cbrt(chi2 / freedom) - (1.0 - scale)) / std::sqrt(scale));
+}
+
+Decision decide(const ForwardModel& model, const SearchResult& result, const Evidence& evidence,
+                const VerdictOptions& options) {
+  Decision decision;
+  const double gain = result.best_gain(), shape = top_evidence(evidence.gap_shapes);
+  if (evidence.gate_p >= options.gate) {
+    decision.reasons.push_back(
+        fmt::format("The largest of all contrasts and signatures is what noise alone gives in {:.2g} of campaigns.",
+                    evidence.gate_p));
+    return decision;
+  }
+  if (gain <= options.bayes_factor && shape <= options.bayes_factor) {
+    decision.reasons.push_back(fmt::format(
+        "No effect (ln Bayes factor {:.1f}) and no smooth shape ({:.1f}) is {:g} better than none.", gain, shape,
+        options.bayes_factor));
+    return decision;
+  }
+  const auto best_of = std::ranges::find_if(
+      result.scored, [](const Scored& one) { return !one.fit.hypothesis.empty(); });
+  const Scored& best = *best_of;
+  const auto size = static_cast<double>(best.fit.residual.size());
+  const double before = result.gap.squaredNorm(), after = squared_gap(best.fit);
+  decision.named = best.fit.hypothesis;
+  decision.probability = best.probability;
+  decision.lack_of_fit_p = chi_square_tail(after, size);
+  decision.excess_removed = before > size ? std::min((before - after) / (before - size), 1.0) : 1.0;
+  decision.candidate_set = set_of(model, result, options.set);
+  decision.group = family_of(decision.candidate_set);
+  const std::string name = names(model, best.fit.hypothesis);
+
+  const double rest = top_evidence(evidence.rest_shapes);
+  const bool something_left = decision.lack_of_fit_p < options.lack_of_fit || rest > options.bayes_factor;
+  if (gain <= options.bayes_factor || shape - gain > options.bayes_factor ||
+      (something_left && decision.excess_removed < options.excess)) {
+    decision.answer = Answer::unknown;
+    decision.reasons.push_back(fmt::format(
+        "A smooth gap over {} (ln Bayes factor {:.1f}) says more than the best name, {} ({:.1f}, which removes "
+        "{:.0f} % of the excess).",
+        evidence.gap_shapes.empty() ? "nothing" : evidence.gap_shapes.front().over, shape, name, gain,
+        100.0 * decision.excess_removed));
+    return decision;
+  }
+  const bool alone = best.probability >= options.probability;
+  if (alone && evidence.scatter_known && evidence.stability >= options.stability) {
+    decision.answer = something_left ? Answer::named_incomplete : Answer::named;
+    decision.reasons.push_back(fmt::format("{} has the probability {:.3f}, ln Bayes factor {:.1f} against none, and "
+                                           "wins in {:.0f} % of half-samples.",
+                                           name, best.probability, gain, 100.0 * evidence.stability));
+    if (something_left)
+      decision.reasons.push_back(fmt::format("Something is left over: p {:.2g}, smooth gap over {} {:.1f}.",
+                                             decision.lack_of_fit_p,
+                                             evidence.rest_shapes.empty() ? "nothing"
+                                                                          : evidence.rest_shapes.front().over,
+                                             rest));
+    return decision;
+  }
+  decision.answer = Answer::one_of;
+  if (alone) {
+    // What demoted it leaves its look-alikes open.
+    for (const std::size_t effect : best.fit.hypothesis)
+      for (const std::string& id : model.candidates[effect].look_alikes)
+        if (std::ranges::find(decision.candidate_set, id) == decision.candidate_set.end() &&
+            std::ranges::any_of(model.candidates, [&](const Candidate& c) { return c.id == id; }))
+          decision.candidate_set.push_back(id);
+    decision.group = family_of(decision.candidate_set);
+    decision.reasons.push_back(evidence.scatter_known
+                                   ? fmt::format("{} is most probable ({:.2f}) but wins in only {:.0f} % of "
+                                                 "half-samples; its look-alikes stay open.",
+                                                 name, best.probability, 100.0 * evidence.stability)
+                                   : fmt::format("{} is most probable ({:.2f}), but the scatter is assumed: no one "
+                                                 "name is given, its look-alikes stay open.",
+                                                 name, best.probability));
+  } else {
+    decision.reasons.push_back(fmt::format("The best name, {}, has the probability {:.2f} only.", name,
+                                           best.probability));
+  }
+  return decision;
+}
+
+}  // namespace heddle::discover

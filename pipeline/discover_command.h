@@ -1,0 +1,42 @@
+#pragma once
+
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "pipeline/case.h"
+#include "pipeline/commands.h"
+#include "pipeline/discover/discovery.h"
+
+namespace heddle::pipeline {
+
+/// A discovery with what it rests on.
+struct DiscoveryRecord {
+  std::string name;       ///< of the case
+  std::string data_file;  ///< its name, without the folder
+  std::string rig, provenance;  ///< of the sidecar; may be empty
+  int seed = 1;
+  friction::Model base;
+  discover::CouponRig coupon_rig;
+  discover::CouponQuestion question;
+  discover::CouponFindings findings;
+  std::vector<std::string> notes;
+};
+
+/// Looks for what the case's model misses in measured coupons.
+/// @param own_effects  effect files beside the library
+/// @throws InputError  with every problem of data, sidecar, wish and effect files
+DiscoveryRecord discover_case_in(const Case& a_case, const std::filesystem::path& data,
+                                 const std::vector<std::filesystem::path>& own_effects = {});
+
+/// The settings with the baseline as it was fitted and, where one name was given, the effect it names.
+Settings discovered_settings(const Case& a_case, const DiscoveryRecord& record);
+
+/// discover/report.json (docs/discover.md lists its keys).
+std::string discovery_json(const DiscoveryRecord& record);
+/// One row a held-out condition: before, after, noise.
+std::string gap_csv(const DiscoveryRecord& record);
+/// The best smooth gap that has no name, point by point.
+std::string shape_csv(const DiscoveryRecord& record);
+
+}  // namespace heddle::pipeline
