@@ -138,8 +138,8 @@ int dispatch(const std::vector<std::string>& arguments, const Commands& commands
     program.exit(error, std::cout, std::cerr);
     return exit_bad_input;
   }
-  for (RunOptions* options : {&run_options, &weave_options, &friction_options, &calibrate_options.run,
-                              &discover_options.run}) {
+  for (RunOptions* options :
+       {&run_options, &weave_options, &friction_options, &calibrate_options.run, &discover_options.run}) {
     options->cache = cache_folder();
     options->checkpoint_interval = checkpoint_interval(options->checkpoint_interval);
   }

@@ -65,8 +65,8 @@ std::vector<discover::Unknown> baseline_of(const friction::Model& model, const D
   return baseline;
 }
 
-std::vector<discover::EffectFile> library_of(const DiscoverSpec& spec, const std::vector<fs::path>& own_effects,
-                                             Problems& problems) {
+std::vector<discover::EffectFile> library_of(const DiscoverSpec& spec,
+                                             const std::vector<fs::path>& own_effects, Problems& problems) {
   std::vector<discover::EffectFile> all = discover::built_in_effects();
   for (const fs::path& file : own_effects) {
     try {
@@ -115,8 +115,10 @@ Sidecar read_sidecar(const fs::path& data, Problems& problems) {
   if (!fs::exists(file)) return sidecar;
   ParsedConfig parsed = parse_config(read_text_file(file), file.string());
   problems.insert(problems.end(), parsed.problems.begin(), parsed.problems.end());
-  const auto add = [&](RuleId id, const ConfigNode& node, const std::string& key, std::string rule, std::string way_out) {
-    problems.push_back({std::move(id), key, node.text, std::move(rule), std::move(way_out), file.string(), node.line});
+  const auto add = [&](RuleId id, const ConfigNode& node, const std::string& key, std::string rule,
+                       std::string way_out) {
+    problems.push_back(
+        {std::move(id), key, node.text, std::move(rule), std::move(way_out), file.string(), node.line});
   };
   for (const ConfigNode::Entry& entry : parsed.root.entries)
     if (entry.key != "rig" && entry.key != "provenance")
@@ -124,16 +126,22 @@ Sidecar read_sidecar(const fs::path& data, Problems& problems) {
                           "Known: rig, provenance.", file.string(), entry.line});
   if (const ConfigNode* area = parsed.root.find_path("rig.plate_area")) {
     const Reading reading = read_quantity(area->text, "m^2");
-    if (reading.ok() && reading.value > 0.0) sidecar.plate_area = reading.value;
-    else add("discover.sidecar.plate_area"_rule, *area, "rig.plate_area", reading.ok() ? "must be positive" : reading.fault,
-             "For instance 0.01 m^2.");
+    if (reading.ok() && reading.value > 0.0)
+      sidecar.plate_area = reading.value;
+    else
+      add("discover.sidecar.plate_area"_rule, *area, "rig.plate_area",
+          reading.ok() ? "must be positive" : reading.fault, "For instance 0.01 m^2.");
   }
   if (const ConfigNode* faces = parsed.root.find_path("rig.faces")) {
-    if (faces->text == "1" || faces->text == "2") sidecar.faces = faces->text == "1" ? 1 : 2;
-    else add("discover.sidecar.faces"_rule, *faces, "rig.faces", "must be 1 or 2", "2 between plates, 1 under a sled.");
+    if (faces->text == "1" || faces->text == "2")
+      sidecar.faces = faces->text == "1" ? 1 : 2;
+    else
+      add("discover.sidecar.faces"_rule, *faces, "rig.faces", "must be 1 or 2",
+          "2 between plates, 1 under a sled.");
   }
   if (const ConfigNode* rig = parsed.root.find("rig")) sidecar.rig = in_one_line(*rig);
-  if (const ConfigNode* provenance = parsed.root.find("provenance")) sidecar.provenance = in_one_line(*provenance);
+  if (const ConfigNode* provenance = parsed.root.find("provenance"))
+    sidecar.provenance = in_one_line(*provenance);
   return sidecar;
 }
 
@@ -150,8 +158,9 @@ Case read_friction_part(const RunOptions& options) {
   a_case.orientation_study.reset();
   a_case.grid_error = false;
   if (a_case.friction) return a_case;
-  throw InputError({{"discover.friction"_rule, "friction", "", "is missing, and discovery in coupons needs it",
-                     "Add `friction:`; configs/discover/friction.yaml shows one.", options.file.string()}});
+  throw InputError(
+      {{"discover.friction"_rule, "friction", "", "is missing, and discovery in coupons needs it",
+        "Add `friction:`; configs/discover/friction.yaml shows one.", options.file.string()}});
 }
 
 void set_number(Settings& settings, const std::string& path, double value) {
@@ -168,7 +177,8 @@ void set_number(Settings& settings, const std::string& path, double value) {
 void print(const DiscoveryRecord& record, const fs::path& folder) {
   const discover::CouponFindings& f = record.findings;
   fmt::print("{}", in_words(f.decision.answer));
-  if (f.decision.answer == discover::Answer::named || f.decision.answer == discover::Answer::named_incomplete) {
+  if (f.decision.answer == discover::Answer::named ||
+      f.decision.answer == discover::Answer::named_incomplete) {
     std::vector<std::string> ids;
     for (const std::size_t effect : f.decision.named) ids.push_back(f.forward.candidates[effect].id);
     fmt::print(" {}", fmt::join(ids, " and "));
@@ -179,17 +189,20 @@ void print(const DiscoveryRecord& record, const fs::path& folder) {
   fmt::print("\n");
   for (const std::string& reason : f.decision.reasons) fmt::print("{}\n", reason);
   if (f.gap)
-    fmt::print("Held-out conditions: {:.1f} % of the force off before, {:.1f} % after, {:.1f} % is noise; shrink {:.0f} % "
-               "({:.0f} to {:.0f}).\n",
-               100.0 * f.gap->before, 100.0 * f.gap->after, 100.0 * f.gap->floor, 100.0 * f.gap->shrink,
-               100.0 * f.gap->shrink_low, 100.0 * f.gap->shrink_high);
+    fmt::print(
+        "Held-out conditions: {:.1f} % of the force off before, {:.1f} % after, {:.1f} % is noise; shrink "
+        "{:.0f} % "
+        "({:.0f} to {:.0f}).\n",
+        100.0 * f.gap->before, 100.0 * f.gap->after, 100.0 * f.gap->floor, 100.0 * f.gap->shrink,
+        100.0 * f.gap->shrink_low, 100.0 * f.gap->shrink_high);
   for (const std::string& note : record.notes) fmt::print("{}\n", note);
   fmt::print("results {}\n", folder.string());
 }
 
 }  // namespace
 
-DiscoveryRecord discover_case_in(const Case& a_case, const fs::path& data, const std::vector<fs::path>& own_effects) {
+DiscoveryRecord discover_case_in(const Case& a_case, const fs::path& data,
+                                 const std::vector<fs::path>& own_effects) {
   const DiscoverSpec spec = a_case.discover.value_or(DiscoverSpec{});
   DiscoveryRecord record;
   record.name = a_case.name;
@@ -235,7 +248,7 @@ Settings discovered_settings(const Case& a_case, const DiscoveryRecord& record) 
   const bool named = found.decision.answer == discover::Answer::named ||
                      found.decision.answer == discover::Answer::named_incomplete;
   const discover::Scored* scored = named ? found.result.find(found.decision.named) : nullptr;
-  const discover::MapFit& fit = scored != nullptr ? scored->fit : found.result.baseline;
+  const discover::MapFit& fit = scored != nullptr ? scored->exact : found.result.baseline;
   const friction::Model patched = discover::patched_model(record.base, found.forward, fit.trial);
   for (const friction::ModelNumber& number : friction::numbers_of(patched)) {
     const bool of_law = number.key.starts_with("friction.");

@@ -12,8 +12,8 @@ namespace heddle::pipeline {
 
 /// A discovery with what it rests on.
 struct DiscoveryRecord {
-  std::string name;       ///< of the case
-  std::string data_file;  ///< its name, without the folder
+  std::string name;             ///< of the case
+  std::string data_file;        ///< its name, without the folder
   std::string rig, provenance;  ///< of the sidecar; may be empty
   int seed = 1;
   friction::Model base;

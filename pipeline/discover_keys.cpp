@@ -44,8 +44,9 @@ std::vector<Key> discover_keys() {
        .presence = Presence::optional,
        .choices = std::move(numbers),
        .stage = Stage::discover,
-       .help = "Keys of the numbers that the model may move before an effect counts as missing. Not given: the "
-               "law's constants, and of the film power_index and activation_energy."},
+       .help =
+           "Keys of the numbers that the model may move before an effect counts as missing. Not given: the "
+           "law's constants, and of the film power_index and activation_energy."},
       {.path = "discover.effects",
        .type = KeyType::text,
        .presence = Presence::defaulted,
@@ -53,19 +54,31 @@ std::vector<Key> discover_keys() {
        .stage = Stage::discover,
        .help = "Ids of the effects to try, apart by blanks; all: the whole library (configs/effects)."},
       quantity("noise.sample", "%", "estimated", "(0, 1]",
-               "Standard deviation of ln F from sample to sample; estimated: from replicates.", {"estimated"}),
-      quantity("noise.day", "%", "estimated", "[0, 1]",
-               "The same from day to day; estimated: from a condition repeated on three days or more. 0 is off.",
+               "Standard deviation of ln F from sample to sample; estimated: from replicates.",
                {"estimated"}),
+      quantity(
+          "noise.day", "%", "estimated", "[0, 1]",
+          "The same from day to day; estimated: from a condition repeated on three days or more. 0 is off.",
+          {"estimated"}),
       quantity("noise.sample_assumed", "%", "5 %", "(0, 1]", "Where no replicates tell it; prior."),
       quantity("noise.day_assumed", "%", "2 %", "[0, 1]", "Where no anchors tell it; prior."),
       quantity("noise.reading", "%", "1.5 %", "(0, 1]",
                "Of one stretch of a pull beside the next, where replicates do not tell it; prior."),
-      quantity("noise.form", "%", "2 %", "[0, 1]",
-               "How far the law's own curve over ln Hs may be off before that counts as a missing effect; prior."),
-      quantity("noise.form_length", "", "1.5", "(0, 100]", "Over how much of ln Hs its error wanders; prior."),
+      quantity(
+          "noise.form", "%", "2 %", "[0, 1]",
+          "How far the law's own curve over ln Hs may be off before that counts as a missing effect; prior."),
+      quantity("noise.form_length", "", "1.5", "(0, 100]",
+               "Over how much of ln Hs its error wanders; prior."),
+      quantity("noise.history", "%", "1 %", "[0, 1]",
+               "How far a pull may be from even along its slip, alike in all conditions, before that counts; "
+               "prior."),
+      quantity("noise.effect_form", "%", "15 %", "[0, 1]",
+               "How far the form of a library effect may be off, as share of what it does to ln F; prior."),
+      quantity("noise.effect_form_length", "", "0.5", "(0, 100]",
+               "Over what share of the range of each factor that error wanders; prior."),
       quantity("held_out", "%", "25 %", "[0, 0.5]", "Share of the conditions that no fit sees."),
-      whole("stretches", "8", "[1, 40]", "Stretches of slip, even in its logarithm, into which a pull is cut."),
+      whole("stretches", "8", "[1, 40]",
+            "Stretches of slip, even in its logarithm, into which a pull is cut."),
       whole("faces", "2", "[1, 2]", "Faces that slide: 2 between plates, 1 under a sled."),
       whole("seed", "1", "[0, 2000000000]", "Of every draw."),
       quantity("tow_pitch", "mm", "5.39 mm", "[0 mm, 100 mm)",
@@ -114,6 +127,9 @@ DiscoverSpec discover_of(const Settings& settings) {
   take("noise.reading", spec.noise.reading);
   take("noise.form", spec.noise.form);
   take("noise.form_length", spec.noise.form_length);
+  take("noise.history", spec.noise.history);
+  take("noise.effect_form", spec.noise.effect_form);
+  take("noise.effect_form_length", spec.noise.effect_form_length);
   take("held_out", spec.held_out);
   take_whole("stretches", spec.stretches);
   take_whole("faces", spec.faces);

@@ -15,7 +15,7 @@ namespace heddle::pipeline {
 /// What the block `discover` asks for. Numbers are matched to a model, effects to the library, when the data
 /// are read.
 struct DiscoverSpec {
-  std::vector<std::string> numbers;  ///< that the baseline may move; empty: the usual ones
+  std::vector<std::string> numbers;                     ///< that the baseline may move; empty: the usual ones
   std::map<std::string, std::array<double, 2>> priors;  ///< {mean, standard deviation}
   std::vector<std::string> effects;                     ///< ids to try; empty: the whole library
   discover::NoiseWish noise;

@@ -11,10 +11,10 @@ namespace heddle::pipeline {
 
 namespace {
 
-using nlohmann::ordered_json;
 using discover::Answer;
 using discover::CouponFindings;
 using discover::Scored;
+using nlohmann::ordered_json;
 
 /// A number with its interval, found in z and carried to the number's own scale.
 ordered_json number_json(const discover::Unknown& unknown, double z, double variance) {
@@ -62,7 +62,7 @@ ordered_json effects_json(const CouponFindings& found) {
   if (found.decision.answer != Answer::named && found.decision.answer != Answer::named_incomplete)
     return effects;
   const Scored* best = found.result.find(found.decision.named);
-  const FittedNumbers numbers = numbers_of(found.forward, best->fit);
+  const FittedNumbers numbers = numbers_of(found.forward, best->exact);
   for (std::size_t k = 0; k < found.decision.named.size(); ++k) {
     const discover::Candidate& candidate = found.forward.candidates[found.decision.named[k]];
     effects.push_back({{"id", candidate.id},
@@ -98,7 +98,8 @@ ordered_json noise_json(const discover::CouponNoise& noise) {
           {"day_source", friction::in_words(noise.day_source)},
           {"day_degrees_of_freedom", noise.day_freedom},
           {"form", noise.form},
-          {"form_length", noise.form_length}};
+          {"form_length", noise.form_length},
+          {"history", noise.history}};
 }
 
 ordered_json shape_json(const std::vector<discover::Shape>& shapes) {
@@ -158,6 +159,13 @@ std::string discovery_json(const DiscoveryRecord& record) {
                 {"conditions", found.gap->conditions}});
   gap["saturated"] = found.saturated;
   root["gap"] = gap;
+  root["signatures"] = ordered_json::array();
+  for (const discover::Signature& signature : found.result.signatures)
+    root["signatures"].push_back(
+        {{"id", found.forward.candidates[signature.effect].id},
+         {"score", signature.score},
+         {"log_force_range", signature.change.maxCoeff() - signature.change.minCoeff()},
+         {"length", signature.direction.norm()}});
   root["noise"] = noise_json(found.noise);
   root["shape"] = {{"of_the_gap", shape_json(found.evidence.gap_shapes)},
                    {"left_over", shape_json(found.evidence.rest_shapes)}};
@@ -172,11 +180,13 @@ std::string discovery_json(const DiscoveryRecord& record) {
 
 std::string gap_csv(const DiscoveryRecord& record) {
   std::string text =
-      "condition,velocity_mm_s,normal_force_N,tool_temperature_C,fabric_temperature_C,orientation_deg,dwell_s,"
+      "condition,velocity_mm_s,normal_force_N,tool_temperature_C,fabric_temperature_C,orientation_deg,dwell_"
+      "s,"
       "error_before,error_after,noise\n";
   for (const discover::HeldOut& one : record.findings.held_out)
-    text += fmt::format("{},{:.5f},{:.5f},{:.5f}\n", condition_cells(record.findings.campaign.cells[one.cell]),
-                        one.before, one.after, one.noise);
+    text +=
+        fmt::format("{},{:.5f},{:.5f},{:.5f}\n", condition_cells(record.findings.campaign.cells[one.cell]),
+                    one.before, one.after, one.noise);
   return text;
 }
 

@@ -239,7 +239,8 @@ std::vector<Pull> stretches_of(const Pull& pull, int count, const SlipRange& ran
     const double slip = *line->displacement;
     if (count == 1 ? slip < 0.5 * longest : slip <= 0.0) continue;
     const bool one = count == 1 || range.is_one();
-    const double share = one ? 0.0 : std::log(slip / range.shortest) / std::log(range.longest / range.shortest);
+    const double share =
+        one ? 0.0 : std::log(slip / range.shortest) / std::log(range.longest / range.shortest);
     stretches[static_cast<std::size_t>(std::clamp(share * count, 0.0, count - 1.0))].push_back(line);
   }
   return stretches;

@@ -74,8 +74,8 @@ void leave_out_outliers(Cells& cells, const friction::CouponData& data, double l
     const double middle = centre(samples);
     std::erase_if(samples, [&](const SampleRows& sample) {
       if (std::abs(sample.mean - middle) <= limit * sd) return false;
-      campaign.outliers.push_back(fmt::format("{} of {}", data.samples[sample.rows.front()->sample],
-                                              sample.rows.front()->pull.name));
+      campaign.outliers.push_back(
+          fmt::format("{} of {}", data.samples[sample.rows.front()->sample], sample.rows.front()->pull.name));
       return true;
     });
   }
@@ -160,11 +160,11 @@ CouponCampaign campaign_of(const friction::CouponData& data, int stretches, doub
     if (name.empty()) name = cell.pull.name.substr(0, cell.pull.name.find('/'));
   }
   if (!campaign.outliers.empty())
-    campaign.notes.push_back(fmt::format(
-        "{} {} far from {} replicates and {} left out: {}.", campaign.outliers.size(),
-        campaign.outliers.size() == 1 ? "sample lies" : "samples lie",
-        campaign.outliers.size() == 1 ? "its" : "their", campaign.outliers.size() == 1 ? "was" : "were",
-        fmt::join(campaign.outliers, ", ")));
+    campaign.notes.push_back(
+        fmt::format("{} {} far from {} replicates and {} left out: {}.", campaign.outliers.size(),
+                    campaign.outliers.size() == 1 ? "sample lies" : "samples lie",
+                    campaign.outliers.size() == 1 ? "its" : "their",
+                    campaign.outliers.size() == 1 ? "was" : "were", fmt::join(campaign.outliers, ", ")));
   return campaign;
 }
 

@@ -51,8 +51,8 @@ CouponCampaign campaign_of(const friction::CouponData& data, int stretches, doub
 
 /// Numbers of the conditions that a campaign may vary, for contrasts and designs.
 struct Factor {
-  const char* name;  ///< "tool_temperature"
-  const char* unit;  ///< for people
+  const char* name;                 ///< "tool_temperature"
+  const char* unit;                 ///< for people
   double (*of)(const CouponCell&);  ///< as contrasts see it: logarithms of speed, load and dwell
 };
 const std::vector<Factor>& factors();

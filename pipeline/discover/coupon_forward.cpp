@@ -17,12 +17,12 @@ namespace {
 
 /// Numbers of the rig effects, by the keys of their files.
 struct RigEffects {
-  double loss = 0.0, loss_time = 1.0;       // R1
-  double offset = 0.0;                      // R2 [N]
-  double drift = 0.0;                       // R3
+  double loss = 0.0, loss_time = 1.0;            // R1
+  double offset = 0.0;                           // R2 [N]
+  double drift = 0.0;                            // R3
   double backlash = 0.0, backlash_length = 1.0;  // R4
-  double contrast = 0.0;                    // R5
-  double from = -1.0, truly = -1.0;         // R6, cells
+  double contrast = 0.0;                         // R5
+  double from = -1.0, truly = -1.0;              // R6, cells
 
   double* find(std::string_view key) {
     if (key == "rig.normal_force_relaxation.loss") return &loss;
@@ -51,8 +51,7 @@ bool is_rig_key(const std::string& key) {
 
 class CouponPredictor {
  public:
-  CouponPredictor(const friction::Model& base, CouponRig rig, std::vector<CouponCell> cells,
-                  std::size_t days)
+  CouponPredictor(const friction::Model& base, CouponRig rig, std::vector<CouponCell> cells, std::size_t days)
       : base_(base), rig_(std::move(rig)), cells_(std::move(cells)), days_(days) {
     for (const CouponCell& cell : cells_) {
       contexts_.push_back(friction::contact_of(cell.pull, rig_.rig, rig_.area));
@@ -120,8 +119,8 @@ class CouponPredictor {
   double gain(const RigEffects& rig, std::size_t cell, const CouponPoint& point) const {
     double log_gain = 0.0;
     if (rig.drift != 0.0 && days_ > 1)
-      log_gain += rig.drift *
-                  (2.0 * static_cast<double>(cells_[cell].day) / static_cast<double>(days_ - 1) - 1.0);
+      log_gain +=
+          rig.drift * (2.0 * static_cast<double>(cells_[cell].day) / static_cast<double>(days_ - 1) - 1.0);
     if (rig.backlash != 0.0 && cells_[cell].pull.velocity > rig_.own_speed)
       log_gain += std::log1p(-rig.backlash * std::exp(-slip_of(point) / rig.backlash_length));
     return log_gain;
@@ -162,7 +161,8 @@ ForwardModel coupon_forward(const friction::Model& base, const CouponRig& rig,
   forward.baseline = std::move(baseline);
   for (const EffectFile& effect : effects) forward.candidates.push_back(effect.candidate());
   const auto predictor = std::make_shared<const CouponPredictor>(base, rig, cells, days);
-  // The candidates may grow after this (R6): a prediction looks at those it was made with, and a copy is cheap.
+  // The candidates may grow after this (R6): a prediction looks at those it was made with, and a copy is
+  // cheap.
   forward.predict = [predictor, base, numbers = forward](const Trial& trial) {
     RigEffects rig_effects;
     for (const auto& [effect, values] : trial.effects) {
@@ -235,7 +235,8 @@ Candidate mislabelled(const Candidate& library, const std::vector<CouponCell>& c
                        {.key = "rig.mislabelled_condition.swapped", .unit = "", .prior = index(truly)}};
   const auto count = static_cast<double>(cells.size());
   candidate.log_weight = -std::log(count * (count - 1.0));
-  candidate.detail = fmt::format("{} measured under the label {}", cells[truly].pull.name, cells[cell].pull.name);
+  candidate.detail =
+      fmt::format("{} measured under the label {}", cells[truly].pull.name, cells[cell].pull.name);
   return candidate;
 }
 

@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "core/problem.h"
+#include "pipeline/discover/coordinates.h"
 #include "pipeline/discover/stability.h"
 
 namespace heddle::discover {
@@ -48,17 +49,19 @@ void add_mislabelled(CouponFindings& findings, const CouponQuestion& question, c
   // The three conditions whose predicted force is nearest to what was measured under the label.
   std::vector<std::size_t> order;
   for (std::size_t c = 0; c < mean.size(); ++c)
-    if (c != worst && findings.training[c].condition != findings.training[worst].condition) order.push_back(c);
-  std::ranges::stable_sort(order, {}, [&](std::size_t c) { return std::abs(mean[c] - mean[worst] - off[worst]); });
+    if (c != worst && findings.training[c].condition != findings.training[worst].condition)
+      order.push_back(c);
+  std::ranges::stable_sort(order, {},
+                           [&](std::size_t c) { return std::abs(mean[c] - mean[worst] - off[worst]); });
   order.resize(std::min<std::size_t>(order.size(), 3));
   for (const std::size_t truly : order)
-    findings.forward.candidates.push_back(
-        mislabelled(library->candidate(), findings.training, worst, truly));
+    findings.forward.candidates.push_back(mislabelled(library->candidate(), findings.training, worst, truly));
 }
 
 /// What a trial predicts of other cells. A wrong label belongs to the cell that carries it.
 Eigen::VectorXd predict_elsewhere(const CouponQuestion& question, const CouponFindings& findings,
-                                  const std::vector<CouponCell>& cells, Trial trial, std::size_t library_size) {
+                                  const std::vector<CouponCell>& cells, Trial trial,
+                                  std::size_t library_size) {
   const ForwardModel elsewhere =
       coupon_forward(question.base, question.rig, cells, question.baseline,
                      usable_effects(question.base, question.effects), findings.campaign.days.size());
@@ -120,14 +123,16 @@ void pass_gate(CouponFindings& findings) {
 
 friction::Model CouponFindings::patched(const friction::Model& base) const {
   const Scored* named = decision.named.empty() ? nullptr : result.find(decision.named);
-  const MapFit& fit = named != nullptr ? named->fit : result.baseline;
+  const MapFit& fit = named != nullptr ? named->exact : result.baseline;
   return patched_model(base, forward, fit.trial);
 }
 
 Prior usual_prior(const friction::ModelNumber& number) {
   Prior prior{.kind = Prior::Kind::normal, .centre = number.value, .scale = 0.1};
-  if (number.key == "resin.power_index") prior.scale = 0.04;
-  else if (number.key == "resin.activation_energy") prior.scale = 0.1 * number.value;
+  if (number.key == "resin.power_index")
+    prior.scale = 0.04;
+  else if (number.key == "resin.activation_energy")
+    prior.scale = 0.1 * number.value;
   else if (number.range.low >= 0.0 && number.value > 0.0)
     prior = {.kind = Prior::Kind::log_normal, .centre = number.value, .scale = 2.0};
   else
@@ -158,17 +163,20 @@ CouponFindings discover_in_coupons(const CouponQuestion& question, const frictio
   // The form of the law wanders over ln Hs, which only a fitted law knows: fit, then weigh, then fit again.
   Observations observations = observations_of(findings.training, findings.noise, {});
   const Eigen::VectorXd start = Eigen::VectorXd::Zero(std::ssize(free_numbers(findings.forward, {})));
-  const MapFit first = map_fit(findings.forward, Whitened(observations), {}, start);
+  const MapFit first =
+      map_fit(findings.forward, std::make_shared<const Whitened>(observations.value, observations.covariance),
+              {}, start);
   if (!std::isfinite(first.log_evidence))
     throw NumericalError("discover: the baseline model has no finite force for every condition of the data");
   const friction::Model fitted = patched_model(question.base, findings.forward, first.trial);
   observations = observations_of(findings.training, findings.noise,
                                  hersey_numbers(fitted, question.rig, findings.training));
-  findings.covariance = observations.covariance;
-  const Whitened whitened(observations);
+  observations.form = question.noise.effect_form;
+  observations.likeness = likeness_of(findings.training, question.noise.effect_form_length);
   add_mislabelled(findings, question, first);
 
-  findings.result = search(findings.forward, whitened, question.search);
+  findings.result = search(findings.forward, observations, question.search);
+  const Whitened& whitened = *findings.result.baseline.data;
   const BesideBaseline beside(findings.result.baseline.jacobian);
   findings.contrasts = contrasts_of(findings.training, whitened, beside);
   findings.largest = largest_of_noise(findings.contrasts, findings.result.signatures, whitened.size(), 999,
@@ -177,24 +185,22 @@ CouponFindings discover_in_coupons(const CouponQuestion& question, const frictio
   pass_gate(findings);
 
   const MapFit* best = best_with_effects(findings.result);
-  findings.evidence.scatter_known =
-      findings.noise.sample_source != friction::Scatter::Source::assumed;
-  findings.evidence.gap_shapes =
-      shapes_of(findings.training, whitened, findings.result.baseline, question.tow_pitch);
+  findings.evidence.scatter_known = findings.noise.sample_source != friction::Scatter::Source::assumed;
+  findings.evidence.gap_shapes = shapes_of(findings.training, findings.result.baseline, question.tow_pitch);
   if (best != nullptr) {
-    findings.evidence.rest_shapes = shapes_of(findings.training, whitened, *best, question.tow_pitch);
+    findings.evidence.rest_shapes = shapes_of(findings.training, *best, question.tow_pitch);
     findings.evidence.stability =
-        stability_of(findings.result, findings.training, findings.covariance,
-                     seed_of(question.seed, Draw::stability));
+        stability_of(findings.result, findings.training, seed_of(question.seed, Draw::stability));
   }
   findings.decision = decide(findings.forward, findings.result, findings.evidence, question.verdict);
 
   const auto numbers = static_cast<std::size_t>(
-      findings.decision.named.empty() ? start.size() : findings.result.find(findings.decision.named)->fit.z.size());
+      findings.decision.named.empty() ? start.size()
+                                      : findings.result.find(findings.decision.named)->fit.z.size());
   findings.saturated = findings.training.size() <= numbers;
   if (!findings.split.held_out.empty() && !findings.decision.named.empty()) {
-    findings.held_out = validate(question, findings, findings.result.find(findings.decision.named)->fit,
-                                 library_size);
+    findings.held_out =
+        validate(question, findings, findings.result.find(findings.decision.named)->exact, library_size);
     findings.gap = gap_of(findings.held_out, seed_of(question.seed, Draw::bootstrap));
   }
   return findings;

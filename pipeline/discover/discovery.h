@@ -22,7 +22,7 @@ namespace heddle::discover {
 struct CouponQuestion {
   friction::Model base;
   CouponRig rig;
-  std::vector<Unknown> baseline;   ///< numbers that every hypothesis moves
+  std::vector<Unknown> baseline;    ///< numbers that every hypothesis moves
   std::vector<EffectFile> effects;  ///< the library
   NoiseWish noise;
   double held_out = 0.25;
@@ -39,7 +39,6 @@ struct CouponFindings {
   CouponNoise noise;
   std::vector<CouponCell> training;
   ForwardModel forward;  ///< of the training cells, with the pairs of R6 that were tried
-  Eigen::MatrixXd covariance;
   SearchResult result;
   std::vector<Contrast> contrasts;
   std::vector<Location> locations;
@@ -48,7 +47,7 @@ struct CouponFindings {
   std::string gate_from;        ///< which
   Evidence evidence;
   Decision decision;
-  std::optional<Gap> gap;          ///< absent where nothing could be held out
+  std::optional<Gap> gap;  ///< absent where nothing could be held out
   std::vector<HeldOut> held_out;
   bool saturated = false;          ///< as many numbers as conditions: a gap that shrinks says nothing
   double detectable_factor = 3.0;  ///< standard deviations that count as detectable
@@ -64,8 +63,8 @@ struct CouponFindings {
 CouponFindings discover_in_coupons(const CouponQuestion& question, const friction::CouponData& data);
 
 /// Prior of a number that the user says nothing of: positive numbers log-normal about the case's value with a
-/// factor of 2, others normal with their own size or 0.1; power_index within 0.04 and activation_energy within
-/// a tenth (what rheology knows: docs/theory/discovery.md).
+/// factor of 2, others normal with their own size or 0.1; power_index within 0.04 and activation_energy
+/// within a tenth (what rheology knows: docs/theory/discovery.md).
 Prior usual_prior(const friction::ModelNumber& number);
 
 }  // namespace heddle::discover

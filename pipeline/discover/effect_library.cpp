@@ -17,12 +17,30 @@ namespace {
 using pipeline::ConfigNode;
 
 constexpr std::array stages{"film", "area", "coefficient", "fabric", "process", "rig", "numerics"};
-constexpr std::array library_order{
-    "tool_temperature_film", "tool_temperature_shift", "static_peak", "sliding_evolution", "stick_slip",
-    "pressure_dependent_area", "orientation", "adhesion", "film_squeeze_out", "dwell_ageing",
-    "solidification", "shear_heating", "wear", "viscosity_plateau", "boundary_lubrication",
-    "normal_force_relaxation", "load_cell_offset", "gain_drift", "drive_backlash", "nonuniform_pressure",
-    "mislabelled_condition", "shear_rate", "inertia", "discretisation"};
+constexpr std::array library_order{"tool_temperature_film",
+                                   "tool_temperature_shift",
+                                   "static_peak",
+                                   "sliding_evolution",
+                                   "stick_slip",
+                                   "pressure_dependent_area",
+                                   "orientation",
+                                   "adhesion",
+                                   "film_squeeze_out",
+                                   "dwell_ageing",
+                                   "solidification",
+                                   "shear_heating",
+                                   "wear",
+                                   "viscosity_plateau",
+                                   "boundary_lubrication",
+                                   "normal_force_relaxation",
+                                   "load_cell_offset",
+                                   "gain_drift",
+                                   "drive_backlash",
+                                   "nonuniform_pressure",
+                                   "mislabelled_condition",
+                                   "shear_rate",
+                                   "inertia",
+                                   "discretisation"};
 
 class EffectReader {
  public:
@@ -42,11 +60,16 @@ class EffectReader {
  private:
   void read_entry(const ConfigNode::Entry& entry) {
     const ConfigNode& value = entry.value;
-    if (entry.key == "id") effect_.id = value.text;
-    else if (entry.key == "stage") read_stage(value);
-    else if (entry.key == "term") effect_.term = value.text;
-    else if (entry.key == "form") effect_.form = value.text;
-    else if (entry.key == "source") effect_.source = value.text;
+    if (entry.key == "id")
+      effect_.id = value.text;
+    else if (entry.key == "stage")
+      read_stage(value);
+    else if (entry.key == "term")
+      effect_.term = value.text;
+    else if (entry.key == "form")
+      effect_.form = value.text;
+    else if (entry.key == "source")
+      effect_.source = value.text;
     else if (entry.key == "look_alikes")
       for (const ConfigNode& item : value.items) effect_.look_alikes.push_back(item.text);
     else if (entry.key == "parameters")
@@ -112,8 +135,8 @@ class EffectReader {
   void give_keys() {
     for (Unknown& number : effect_.numbers)
       if (number.key.find('.') == std::string::npos)
-        number.key = fmt::format("{}.{}.{}", effect_.stage == "rig" ? "rig" : "effects", effect_.term,
-                                 number.key);
+        number.key =
+            fmt::format("{}.{}.{}", effect_.stage == "rig" ? "rig" : "effects", effect_.term, number.key);
   }
 
   void add(RuleId id, std::string key, std::string value, std::string rule, std::string way_out, int line) {
@@ -134,12 +157,8 @@ class EffectReader {
 
 Candidate EffectFile::candidate() const {
   const Kind kind = stage == "rig" ? Kind::rig : stage == "numerics" ? Kind::numerics : Kind::physics;
-  return {.id = id,
-          .kind = kind,
-          .numbers = numbers,
-          .look_alikes = look_alikes,
-          .form = form,
-          .source = source};
+  return {
+      .id = id, .kind = kind, .numbers = numbers, .look_alikes = look_alikes, .form = form, .source = source};
 }
 
 EffectFile read_effect(const std::string& text, const std::string& file) {

@@ -28,8 +28,8 @@ struct EffectFile {
   Candidate candidate() const;
 };
 
-/// Reads an effect file, strictly: an unknown key, a prior that cannot be read, an amplitude without off value
-/// are problems.
+/// Reads an effect file, strictly: an unknown key, a prior that cannot be read, an amplitude without off
+/// value are problems.
 /// @throws InputError  with all of them
 EffectFile read_effect(const std::string& text, const std::string& file);
 

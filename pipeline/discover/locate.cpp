@@ -159,7 +159,8 @@ std::vector<Location> locate(const std::vector<Contrast>& contrasts, const Eigen
   }
   std::vector<Location> locations;
   for (auto& [factor, location] : strongest) locations.push_back(std::move(location));
-  std::ranges::stable_sort(locations, std::greater{}, [](const Location& l) { return std::abs(l.statistic); });
+  std::ranges::stable_sort(locations, std::greater{},
+                           [](const Location& l) { return std::abs(l.statistic); });
   return locations;
 }
 

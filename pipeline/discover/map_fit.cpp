@@ -4,7 +4,6 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <numbers>
 
 #include "core/problem.h"
 
@@ -109,7 +108,7 @@ void add_evidence(MapFit& fit, const std::vector<const Unknown*>& numbers, const
   const Eigen::VectorXd to_optimum = -(fit.covariance * gradient);
   const double log_determinant = 2.0 * root.matrixLLT().diagonal().array().log().sum();
   fit.log_evidence = -0.5 * (fit.chi2 + fit.z.squaredNorm() + gradient.dot(to_optimum)) -
-                     0.5 * log_determinant - log_prior_mass;
+                     0.5 * log_determinant - log_prior_mass - 0.5 * fit.data->log_determinant();
   for (Eigen::Index k = 0; k < count; ++k) {
     const double sd = std::sqrt(fit.covariance(k, k)), centre = fit.z[k] + to_optimum[k];
     fit.log_evidence += log_normal_mass((room.low[k] - centre) / sd, (room.high[k] - centre) / sd);
@@ -118,8 +117,8 @@ void add_evidence(MapFit& fit, const std::vector<const Unknown*>& numbers, const
 
 }  // namespace
 
-Whitened::Whitened(const Observations& observations)
-    : value_(observations.value), root_(observations.covariance) {
+Whitened::Whitened(const Eigen::VectorXd& value, const Eigen::MatrixXd& covariance)
+    : value_(value), root_(covariance) {
   if (root_.info() != Eigen::Success)
     throw NumericalError("discover: the covariance of the observations is not positive definite");
 }
@@ -130,6 +129,18 @@ Eigen::VectorXd Whitened::residual(const Eigen::VectorXd& predicted) const {
 
 Eigen::MatrixXd Whitened::operator()(const Eigen::MatrixXd& columns) const {
   return root_.matrixL().solve(columns);
+}
+
+Eigen::MatrixXd Whitened::unwhitened(const Eigen::MatrixXd& columns) const {
+  return root_.matrixL() * columns;
+}
+
+Eigen::MatrixXd Whitened::covariance() const {
+  return root_.reconstructedMatrix();
+}
+
+double Whitened::log_determinant() const {
+  return 2.0 * root_.matrixLLT().diagonal().array().log().sum();
 }
 
 std::vector<const Unknown*> free_numbers(const ForwardModel& model, const Hypothesis& hypothesis) {
@@ -159,12 +170,13 @@ Trial trial_at(const ForwardModel& model, const Hypothesis& hypothesis, const Ei
   return trial;
 }
 
-MapFit map_fit(const ForwardModel& model, const Whitened& data, const Hypothesis& hypothesis,
+MapFit map_fit(const ForwardModel& model, std::shared_ptr<const Whitened> data, const Hypothesis& hypothesis,
                const Eigen::VectorXd& start, const FitOptions& options) {
   const std::vector<const Unknown*> numbers = free_numbers(model, hypothesis);
   const Room room = room_of(numbers);
-  Slopes slopes(model, data, hypothesis, room, options.step);
+  Slopes slopes(model, *data, hypothesis, room, options.step);
   MapFit fit;
+  fit.data = std::move(data);
   fit.hypothesis = hypothesis;
   fit.z = room.into(start);
   fit.residual = slopes.residual(fit.z);
@@ -212,8 +224,9 @@ MapFit map_fit(const ForwardModel& model, const Whitened& data, const Hypothesis
   return fit;
 }
 
-MapFit best_fit(const ForwardModel& model, const Whitened& data, const Hypothesis& hypothesis,
-                const std::vector<Eigen::VectorXd>& starts, const FitOptions& options) {
+MapFit best_fit(const ForwardModel& model, const std::shared_ptr<const Whitened>& data,
+                const Hypothesis& hypothesis, const std::vector<Eigen::VectorXd>& starts,
+                const FitOptions& options) {
   MapFit best;
   int evaluations = 0;
   for (const Eigen::VectorXd& start : starts) {
@@ -223,6 +236,22 @@ MapFit best_fit(const ForwardModel& model, const Whitened& data, const Hypothesi
   }
   best.evaluations = evaluations;
   return best;
+}
+
+MapFit with_form_error(const ForwardModel& model, const Observations& observations, const MapFit& fit,
+                       const FitOptions& options) {
+  if (observations.likeness.size() == 0 || observations.form == 0.0 || !std::isfinite(fit.log_evidence))
+    return fit;
+  Eigen::MatrixXd covariance = observations.covariance;
+  const Eigen::VectorXd whole = model.predict(fit.trial);
+  for (std::size_t k = 0; k < fit.trial.effects.size(); ++k) {
+    Trial without = fit.trial;
+    without.effects.erase(without.effects.begin() + static_cast<std::ptrdiff_t>(k));
+    const Eigen::VectorXd share = observations.form * (whole - model.predict(without));
+    if (share.allFinite()) covariance += share.asDiagonal() * observations.likeness * share.asDiagonal();
+  }
+  return map_fit(model, std::make_shared<const Whitened>(observations.value, covariance), fit.hypothesis,
+                 fit.z, options);
 }
 
 }  // namespace heddle::discover

@@ -2,6 +2,7 @@
 
 #include <Eigen/Cholesky>
 #include <Eigen/Core>
+#include <memory>
 #include <vector>
 
 #include "pipeline/discover/hypothesis.h"
@@ -12,12 +13,16 @@ namespace heddle::discover {
 class Whitened {
  public:
   /// @throws NumericalError  if the covariance is not positive definite
-  explicit Whitened(const Observations& observations);
+  Whitened(const Eigen::VectorXd& value, const Eigen::MatrixXd& covariance);
   Eigen::Index size() const { return value_.size(); }
   /// L^-1 (predicted - measured) with the covariance L L^T.
   Eigen::VectorXd residual(const Eigen::VectorXd& predicted) const;
   /// L^-1 of columns of changes.
   Eigen::MatrixXd operator()(const Eigen::MatrixXd& columns) const;
+  /// L of whitened columns.
+  Eigen::MatrixXd unwhitened(const Eigen::MatrixXd& columns) const;
+  Eigen::MatrixXd covariance() const;
+  double log_determinant() const;  ///< of the covariance
   const Eigen::VectorXd& value() const { return value_; }
 
  private:
@@ -28,15 +33,15 @@ class Whitened {
 /// The most probable numbers of one hypothesis, and how much the data speak for it.
 struct MapFit {
   Hypothesis hypothesis;
-  Eigen::VectorXd z;         ///< coordinates: the free numbers of the baseline, then of each effect
-  Trial trial;               ///< the same as values
-  Eigen::VectorXd residual;  ///< whitened, of the observations alone
-  Eigen::MatrixXd jacobian;  ///< d residual / d z
+  std::shared_ptr<const Whitened> data;  ///< with the form error of the hypothesis' own effects
+  Eigen::VectorXd z;           ///< coordinates: the free numbers of the baseline, then of each effect
+  Trial trial;                 ///< the same as values
+  Eigen::VectorXd residual;    ///< whitened, of the observations alone
+  Eigen::MatrixXd jacobian;    ///< d residual / d z
   Eigen::MatrixXd covariance;  ///< of z, Laplace
   double chi2 = 0.0;           ///< |residual|^2
-  /// ln of the evidence: Int exp(-|residual|^2/2) prior(z) dz, without the part of the observations'
-  /// covariance that all hypotheses share; Laplace's approximation, with each coordinate's mass between its
-  /// bounds.
+  /// ln of the evidence: Int exp(-|residual|^2/2)/sqrt(det C) prior(z) dz; Laplace's approximation, with each
+  /// coordinate's mass between its bounds.
   double log_evidence = 0.0;
   bool converged = false;
   int evaluations = 0;  ///< predictions asked for
@@ -54,11 +59,17 @@ struct FitOptions {
 
 /// Gauss-Newton within the bounds, damped after Levenberg and Marquardt, on residuals and prior together.
 /// @param start  of z; where the prediction is not finite there, `converged` is false and the evidence -inf
-MapFit map_fit(const ForwardModel& model, const Whitened& data, const Hypothesis& hypothesis,
+MapFit map_fit(const ForwardModel& model, std::shared_ptr<const Whitened> data, const Hypothesis& hypothesis,
                const Eigen::VectorXd& start, const FitOptions& options = {});
 
-/// The best of several starts.
-MapFit best_fit(const ForwardModel& model, const Whitened& data, const Hypothesis& hypothesis,
-                const std::vector<Eigen::VectorXd>& starts, const FitOptions& options = {});
+/// The best of several starts, forms taken as exact.
+MapFit best_fit(const ForwardModel& model, const std::shared_ptr<const Whitened>& data,
+                const Hypothesis& hypothesis, const std::vector<Eigen::VectorXd>& starts,
+                const FitOptions& options = {});
+
+/// Once more with the covariance of the error that the forms of the effects have at a fit: what the evidence
+/// of different names is compared by. Its numbers are not those to predict with: they lean on the error.
+MapFit with_form_error(const ForwardModel& model, const Observations& observations, const MapFit& fit,
+                       const FitOptions& options = {});
 
 }  // namespace heddle::discover

@@ -24,8 +24,7 @@ Eigen::MatrixXd structured(const Eigen::MatrixXd& pooled) {
   const Eigen::Index size = pooled.rows();
   const double trace = pooled.trace() / static_cast<double>(size);
   if (size == 1) return pooled;
-  const double off = std::max(
-      (pooled.sum() - pooled.trace()) / static_cast<double>(size * (size - 1)), 0.0);
+  const double off = std::max((pooled.sum() - pooled.trace()) / static_cast<double>(size * (size - 1)), 0.0);
   return gain_and_reading(size, std::sqrt(off), std::sqrt(std::max(trace - off, 1e-6)));
 }
 
@@ -41,7 +40,8 @@ void set_sample(CouponNoise& noise, const CouponCampaign& campaign, const NoiseW
     noise.sample = gain_and_reading(q, wish.sample_assumed, wish.reading);
     noise.sample_source = Source::assumed;
     noise.notes.push_back(fmt::format(
-        "No condition was pulled twice on one day: a scatter of {:g} % from sample to sample is ASSUMED, so no "
+        "No condition was pulled twice on one day: a scatter of {:g} % from sample to sample is ASSUMED, so "
+        "no "
         "effect is given as the one name. Repeat at least one condition, or give discover.noise.sample.",
         100.0 * wish.sample_assumed));
     return;
@@ -68,8 +68,9 @@ void set_day(CouponNoise& noise, const friction::CouponData& data, const NoiseWi
     // As if three more days had scattered as is assumed: few anchors alone may show none by chance.
     constexpr double prior_days = 3.0;
     const auto freedom = static_cast<double>(anchors->degrees_of_freedom);
-    noise.day = std::sqrt((freedom * anchors->sd * anchors->sd + prior_days * wish.day_assumed * wish.day_assumed) /
-                          (freedom + prior_days));
+    noise.day =
+        std::sqrt((freedom * anchors->sd * anchors->sd + prior_days * wish.day_assumed * wish.day_assumed) /
+                  (freedom + prior_days));
     noise.day_source = Source::anchors;
     noise.day_freedom = anchors->degrees_of_freedom;
     return;
@@ -91,6 +92,7 @@ CouponNoise noise_of(const CouponCampaign& campaign, const friction::CouponData&
   CouponNoise noise;
   noise.form = wish.form;
   noise.form_length = wish.form_length;
+  noise.history = wish.history;
   set_sample(noise, campaign, wish);
   set_day(noise, data, wish, faces);
   return noise;
@@ -114,11 +116,14 @@ Eigen::MatrixXd covariance_of(const CouponNoise& noise, const std::vector<Coupon
       }
       for (Eigen::Index i = 0; i < std::ssize(cells[a].points); ++i)
         for (Eigen::Index j = 0; j < std::ssize(cells[b].points); ++j) {
+          const CouponPoint &at = cells[a].points[static_cast<std::size_t>(i)],
+                            &other = cells[b].points[static_cast<std::size_t>(j)];
           double value = shared;
-          if (a == b)
-            value += noise.sample(cells[a].points[static_cast<std::size_t>(i)].stretch,
-                                  cells[a].points[static_cast<std::size_t>(j)].stretch) /
-                     cells[a].samples;
+          if (at.slip > 0.0 && other.slip > 0.0) {
+            const double distance = std::log(at.slip / other.slip);
+            value += noise.history * noise.history * std::exp(-0.5 * distance * distance);
+          }
+          if (a == b) value += noise.sample(at.stretch, other.stretch) / cells[a].samples;
           covariance(first[a] + i, first[b] + j) = value;
           covariance(first[b] + j, first[a] + i) = value;
         }

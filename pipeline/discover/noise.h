@@ -21,6 +21,13 @@ struct NoiseWish {
   /// how long a stretch of ln Hs it wanders: a smooth Gaussian process.
   double form = 0.02;
   double form_length = 1.5;
+  /// How far a pull may be from even along its slip, alike in all conditions, before that counts: rigs take
+  /// up, fabrics settle. Over one e-fold of slip.
+  double history = 0.01;
+  /// The same of an effect: a share of what it does to ln F over each factor and over ln slip, wandering over
+  /// this share of their ranges.
+  double effect_form = 0.15;
+  double effect_form_length = 0.5;
 };
 
 /// Scatter of the means of the cells.
@@ -31,7 +38,7 @@ struct CouponNoise {
   double day = 0.0;
   friction::Scatter::Source day_source = friction::Scatter::Source::unknown;
   int day_freedom = 0;
-  double form = 0.0, form_length = 1.0;
+  double form = 0.0, form_length = 1.0, history = 0.0;
   std::vector<std::string> notes = {};
 
   /// Of the mean over stretches of one piece.

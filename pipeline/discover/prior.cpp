@@ -133,19 +133,26 @@ class PriorReader {
 
 double Prior::value_at(double z) const {
   switch (kind) {
-    case Kind::fixed: return centre;
-    case Kind::normal: return centre + scale * z;
-    case Kind::half_normal: return scale * z;
-    case Kind::log_normal: return centre * std::pow(scale, z);
+    case Kind::fixed:
+      return centre;
+    case Kind::normal:
+      return centre + scale * z;
+    case Kind::half_normal:
+      return scale * z;
+    case Kind::log_normal:
+      return centre * std::pow(scale, z);
   }
   return centre;
 }
 
 double Prior::coordinate_of(double value) const {
   switch (kind) {
-    case Kind::fixed: return 0.0;
-    case Kind::normal: return (value - centre) / scale;
-    case Kind::half_normal: return value / scale;
+    case Kind::fixed:
+      return 0.0;
+    case Kind::normal:
+      return (value - centre) / scale;
+    case Kind::half_normal:
+      return value / scale;
     case Kind::log_normal:
       return value > 0.0 ? std::log(value / centre) / std::log(scale)
                          : -std::numeric_limits<double>::infinity();
@@ -172,11 +179,14 @@ std::string write_prior(const Prior& prior, const std::string& unit) {
   const auto in = [](double value, const std::string& example) { return write_quantity(value, example); };
   std::string text;
   switch (prior.kind) {
-    case Prior::Kind::fixed: return fmt::format("fixed, {}", in(prior.centre, unit));
+    case Prior::Kind::fixed:
+      return fmt::format("fixed, {}", in(prior.centre, unit));
     case Prior::Kind::normal:
       text = fmt::format("normal, mean {}, sd {}", in(prior.centre, unit), in(prior.scale, step));
       break;
-    case Prior::Kind::half_normal: text = fmt::format("half-normal, scale {}", in(prior.scale, step)); break;
+    case Prior::Kind::half_normal:
+      text = fmt::format("half-normal, scale {}", in(prior.scale, step));
+      break;
     case Prior::Kind::log_normal:
       text = fmt::format("log-normal, median {}, factor {}", in(prior.centre, unit), in(prior.scale, ""));
       break;

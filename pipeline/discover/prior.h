@@ -20,7 +20,8 @@ struct Prior {
   Kind kind = Kind::fixed;
   double centre = 0.0;
   double scale = 1.0;  ///< > 0; > 1 of log_normal
-  double low = -std::numeric_limits<double>::infinity();  ///< of the number, as the prior or its key bounds it
+  double low =
+      -std::numeric_limits<double>::infinity();  ///< of the number, as the prior or its key bounds it
   double high = std::numeric_limits<double>::infinity();
 
   double value_at(double z) const;

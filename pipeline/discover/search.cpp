@@ -21,9 +21,10 @@ class HypothesisPrior {
     ids_ = static_cast<double>(ids.size());
   }
   double of(const Hypothesis& hypothesis) const {
-    double log_prior = hypothesis.empty()       ? std::log(options_.no_effect)
-                       : hypothesis.size() == 1 ? std::log(options_.one_effect / ids_)
-                                                : std::log(options_.two_effects / (0.5 * ids_ * (ids_ - 1.0)));
+    double log_prior = hypothesis.empty() ? std::log(options_.no_effect)
+                       : hypothesis.size() == 1
+                           ? std::log(options_.one_effect / ids_)
+                           : std::log(options_.two_effects / (0.5 * ids_ * (ids_ - 1.0)));
     for (const std::size_t effect : hypothesis) log_prior += model_.candidates[effect].log_weight;
     return log_prior;
   }
@@ -61,8 +62,9 @@ Eigen::VectorXd joined(const MapFit& baseline, const MapFit& first, const MapFit
   return z;
 }
 
-std::vector<Hypothesis> pairs_to_try(const std::vector<Scored>& singles, const std::vector<Signature>& signatures,
-                                     const ForwardModel& model, const SearchOptions& options) {
+std::vector<Hypothesis> pairs_to_try(const std::vector<Scored>& singles,
+                                     const std::vector<Signature>& signatures, const ForwardModel& model,
+                                     const SearchOptions& options) {
   std::vector<std::size_t> by_evidence, by_score;
   for (const Scored& single : singles) by_evidence.push_back(single.fit.hypothesis[0]);
   for (const Signature& signature : signatures) by_score.push_back(signature.effect);
@@ -83,8 +85,8 @@ std::vector<Hypothesis> pairs_to_try(const std::vector<Scored>& singles, const s
 }  // namespace
 
 const Scored* SearchResult::find(const Hypothesis& hypothesis) const {
-  const auto at = std::ranges::find_if(
-      scored, [&](const Scored& one) { return one.fit.hypothesis == hypothesis; });
+  const auto at =
+      std::ranges::find_if(scored, [&](const Scored& one) { return one.fit.hypothesis == hypothesis; });
   return at == scored.end() ? nullptr : &*at;
 }
 
@@ -113,8 +115,10 @@ bool earns_its_place(const SearchResult& result, const Scored& pair, double baye
   return true;
 }
 
-SearchResult search(const ForwardModel& model, const Whitened& data, const SearchOptions& options) {
+SearchResult search(const ForwardModel& model, const Observations& observations,
+                    const SearchOptions& options) {
   SearchResult result;
+  const auto data = std::make_shared<const Whitened>(observations.value, observations.covariance);
   const HypothesisPrior prior(model, options);
   const auto free_baseline = std::ssize(free_numbers(model, {}));
   result.baseline = map_fit(model, data, {}, Eigen::VectorXd::Zero(free_baseline));
@@ -127,32 +131,35 @@ SearchResult search(const ForwardModel& model, const Whitened& data, const Searc
   std::vector<std::vector<Signature>> signatures(count);
   std::vector<Scored> singles(count);
   tbb::parallel_for(std::size_t{0}, count, [&](std::size_t effect) {
-    signatures[effect] = signatures_of(model, data, result.baseline, beside, result.gap, effect);
-    singles[effect] = {
-        .fit = best_fit(model, data, {effect},
-                        starts_of(model, result.baseline, signatures[effect])),
-        .log_prior = prior.of({effect})};
+    signatures[effect] = signatures_of(model, *data, result.baseline, beside, result.gap, effect);
+    MapFit exact = best_fit(model, data, {effect}, starts_of(model, result.baseline, signatures[effect]));
+    singles[effect] = {.fit = with_form_error(model, observations, exact),
+                       .exact = std::move(exact),
+                       .log_prior = prior.of({effect})};
   });
   for (const std::vector<Signature>& of : signatures)
     if (const Signature* best = strongest(of)) result.signatures.push_back(*best);
   std::vector<MapFit> by_effect;
-  for (const Scored& single : singles) by_effect.push_back(single.fit);
+  for (const Scored& single : singles) by_effect.push_back(single.exact);
   std::erase_if(singles, [](const Scored& one) { return !std::isfinite(one.fit.log_evidence); });
   std::ranges::stable_sort(singles, std::greater{},
                            [](const Scored& one) { return one.fit.log_evidence + one.log_prior; });
 
   result.scored = singles;
-  result.scored.push_back({.fit = result.baseline, .log_prior = prior.of({})});
+  result.scored.push_back({.fit = result.baseline, .exact = result.baseline, .log_prior = prior.of({})});
   // A pair can only win where a single effect does better than none.
   if (result.best_gain() > options.bayes_factor) {
     std::vector<Hypothesis> pairs = pairs_to_try(singles, result.signatures, model, options);
     std::erase_if(pairs, [&](const Hypothesis& pair) {
-      return !std::isfinite(by_effect[pair[0]].log_evidence) || !std::isfinite(by_effect[pair[1]].log_evidence);
+      return !std::isfinite(by_effect[pair[0]].log_evidence) ||
+             !std::isfinite(by_effect[pair[1]].log_evidence);
     });
     std::vector<Scored> fitted(pairs.size());
     tbb::parallel_for(std::size_t{0}, pairs.size(), [&](std::size_t k) {
       const MapFit &first = by_effect[pairs[k][0]], &second = by_effect[pairs[k][1]];
-      fitted[k] = {.fit = map_fit(model, data, pairs[k], joined(result.baseline, first, second)),
+      MapFit exact = map_fit(model, data, pairs[k], joined(result.baseline, first, second));
+      fitted[k] = {.fit = with_form_error(model, observations, exact),
+                   .exact = std::move(exact),
                    .log_prior = prior.of(pairs[k])};
     });
     for (Scored& pair : fitted)

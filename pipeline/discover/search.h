@@ -12,9 +12,9 @@ namespace heddle::discover {
 
 /// Probabilities before the data, and how far the search goes.
 struct SearchOptions {
-  double no_effect = 0.5;    ///< prior probability that nothing is missing
-  double one_effect = 0.4;   ///< shared evenly by all ids
-  double two_effects = 0.1;  ///< shared evenly by all pairs
+  double no_effect = 0.5;     ///< prior probability that nothing is missing
+  double one_effect = 0.4;    ///< shared evenly by all ids
+  double two_effects = 0.1;   ///< shared evenly by all pairs
   double bayes_factor = 3.0;  ///< ln, that each effect more must gain
   std::size_t pairs_of = 5;   ///< single effects whose pairs are tried, the best by evidence
   std::size_t partners = 12;  ///< with how many of the strongest by score
@@ -22,7 +22,8 @@ struct SearchOptions {
 
 /// One hypothesis that was fitted, with its probability among all that were.
 struct Scored {
-  MapFit fit;
+  MapFit fit;    ///< with the error of form of its effects: for evidence and for what is left over
+  MapFit exact;  ///< forms taken as exact: the numbers to predict with
   double log_prior = 0.0;
   double probability = 0.0;
 };
@@ -42,7 +43,8 @@ struct SearchResult {
 };
 
 /// Baseline, signatures, every single effect, pairs of the strongest: fitted, scored by Laplace evidence.
-SearchResult search(const ForwardModel& model, const Whitened& data, const SearchOptions& options = {});
+SearchResult search(const ForwardModel& model, const Observations& observations,
+                    const SearchOptions& options = {});
 
 /// Sorts and normalises.
 void give_probabilities(std::vector<Scored>& scored);

@@ -8,54 +8,14 @@
 #include <map>
 #include <numbers>
 
+#include "pipeline/discover/coordinates.h"
+
 namespace heddle::discover {
 
 namespace {
 
 constexpr std::array amplitudes{0.02, 0.05, 0.1, 0.2};
 constexpr std::array lengths{0.2, 0.6};
-
-/// A coordinate of every observation, 0 to 1 over the campaign.
-struct Coordinate {
-  std::string name;
-  Eigen::VectorXd at;
-};
-
-double gaussian(double distance, double length) {
-  const double x = distance / length;
-  return std::exp(-0.5 * x * x);
-}
-
-Eigen::VectorXd of_points(const std::vector<CouponCell>& cells, Eigen::Index size,
-                          const std::function<double(const CouponCell&, const CouponPoint&)>& value) {
-  Eigen::VectorXd values(size);
-  Eigen::Index at = 0;
-  for (const CouponCell& cell : cells)
-    for (const CouponPoint& point : cell.points) values[at++] = value(cell, point);
-  return values;
-}
-
-bool to_unit_range(Eigen::VectorXd& values) {
-  const double low = values.minCoeff(), range = values.maxCoeff() - low;
-  if (!(range > 1e-6 * (1.0 + std::abs(low)))) return false;
-  values = (values.array() - low) / range;
-  return true;
-}
-
-std::vector<Coordinate> coordinates_of(const std::vector<CouponCell>& cells, Eigen::Index size) {
-  std::vector<Coordinate> coordinates;
-  for (const Factor& factor : factors()) {
-    if (std::string(factor.name) == "day") continue;
-    Coordinate one{factor.name,
-                   of_points(cells, size, [&](const CouponCell& cell, const CouponPoint&) { return factor.of(cell); })};
-    if (to_unit_range(one.at)) coordinates.push_back(std::move(one));
-  }
-  Coordinate slip{"slip", of_points(cells, size, [](const CouponCell&, const CouponPoint& point) {
-                    return point.slip > 0.0 ? std::log(point.slip) : 0.0;
-                  })};
-  if (to_unit_range(slip.at)) coordinates.push_back(std::move(slip));
-  return coordinates;
-}
 
 /// Columns whose products make the kernel, as many as carry it to 1e-4. Observations that share their
 /// coordinates share a row, so that only the different ones are decomposed.
@@ -77,7 +37,8 @@ Eigen::MatrixXd root_of(const std::function<double(Eigen::Index, Eigen::Index)>&
       matrix(a, b) = kernel(first[static_cast<std::size_t>(a)], first[static_cast<std::size_t>(b)]);
   const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> eigen(matrix);
   Eigen::Index kept = 0;
-  while (kept < count && eigen.eigenvalues()[count - 1 - kept] > 1e-4 * eigen.eigenvalues()[count - 1]) ++kept;
+  while (kept < count && eigen.eigenvalues()[count - 1 - kept] > 1e-4 * eigen.eigenvalues()[count - 1])
+    ++kept;
   Eigen::MatrixXd root(size, kept);
   for (Eigen::Index i = 0; i < size; ++i)
     for (Eigen::Index k = 0; k < kept; ++k)
@@ -94,24 +55,26 @@ struct Kernel {
 };
 
 std::vector<Kernel> kernels_of(const std::vector<CouponCell>& cells, Eigen::Index size, double pitch) {
-  const std::vector<Coordinate> coordinates = coordinates_of(cells, size);
+  const std::vector<Coordinate> coordinates = coordinates_of(cells);
   std::vector<Kernel> kernels;
   for (const Coordinate& c : coordinates)
     for (const double length : lengths)
-      kernels.push_back({c.name, length, root_of([&](auto i, auto j) { return gaussian(c.at[i] - c.at[j], length); },
-                                                 {&c.at}, size)});
+      kernels.push_back(
+          {c.name, length,
+           root_of([&](auto i, auto j) { return gaussian(c.at[i] - c.at[j], length); }, {&c.at}, size)});
   for (std::size_t a = 0; a < coordinates.size(); ++a)
     for (std::size_t b = a + 1; b < coordinates.size(); ++b) {
       const Eigen::VectorXd &x = coordinates[a].at, &y = coordinates[b].at;
       const double length = lengths.back();
-      kernels.push_back({coordinates[a].name + " x " + coordinates[b].name, length,
-                         root_of([&](auto i, auto j) {
-                           return gaussian(x[i] - x[j], length) * gaussian(y[i] - y[j], length);
-                         }, {&x, &y}, size)});
+      kernels.push_back(
+          {coordinates[a].name + " x " + coordinates[b].name, length,
+           root_of(
+               [&](auto i, auto j) { return gaussian(x[i] - x[j], length) * gaussian(y[i] - y[j], length); },
+               {&x, &y}, size)});
     }
   if (pitch > 0.0) {
     Kernel ripple{"tow pitch", pitch, Eigen::MatrixXd(size, 2)};
-    const Eigen::VectorXd phase = of_points(cells, size, [&](const CouponCell&, const CouponPoint& point) {
+    const Eigen::VectorXd phase = of_points(cells, [&](const CouponCell&, const CouponPoint& point) {
       return 2.0 * std::numbers::pi * point.slip / pitch;
     });
     ripple.root << phase.array().cos().matrix(), phase.array().sin().matrix();
@@ -122,8 +85,8 @@ std::vector<Kernel> kernels_of(const std::vector<CouponCell>& cells, Eigen::Inde
 
 }  // namespace
 
-std::vector<Shape> shapes_of(const std::vector<CouponCell>& cells, const Whitened& data, const MapFit& fit,
-                             double pitch) {
+std::vector<Shape> shapes_of(const std::vector<CouponCell>& cells, const MapFit& fit, double pitch) {
+  const Whitened& data = *fit.data;
   const BesideBaseline beside(fit.jacobian);
   const Eigen::VectorXd gap = -beside.gap_of(fit.residual);  // measured less model
   std::map<std::string, std::vector<Shape>> found;
@@ -186,7 +149,8 @@ std::vector<ShapePoint> curve_of(const Shape& shape, const std::vector<CouponCel
   std::vector<ShapePoint> curve;
   for (const auto& [key, sum] : levels) {
     const double n = sum.count, gap = sum.gap / n, sd = sum.sd / n, force = sum.force / n;
-    curve.push_back({over, sum.at / n, gap, gap - 1.96 * sd, gap + 1.96 * sd, force * (1.0 - std::exp(-gap))});
+    curve.push_back(
+        {over, sum.at / n, gap, gap - 1.96 * sd, gap + 1.96 * sd, force * (1.0 - std::exp(-gap))});
   }
   return curve;
 }

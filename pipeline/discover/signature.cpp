@@ -44,17 +44,21 @@ std::vector<Signature> signatures_of(const ForwardModel& model, const Whitened& 
     }
   const auto [low, high] = candidate.numbers.front().prior.bounds();
   const std::vector<double> amplitudes = low >= 0.0 ? std::vector{0.5} : std::vector{0.5, -0.5};
+  const Eigen::VectorXd at_baseline = model.predict(baseline.trial);
   std::vector<Signature> signatures;
   for (const Eigen::VectorXd& shape : shapes)
     for (const double amplitude : amplitudes) {
       Eigen::VectorXd z(baseline.z.size() + numbers);
       z << baseline.z, std::min(amplitude, high), shape;
-      const Eigen::VectorXd change =
-          data.residual(model.predict(trial_at(model, {effect}, z))) - baseline.residual;
-      if (!change.allFinite()) continue;
-      Signature signature{
-          .effect = effect, .shape = shape, .amplitude = std::min(amplitude, high), .direction = {}};
-      signature.direction = beside(change) / signature.amplitude;
+      const Eigen::VectorXd predicted = model.predict(trial_at(model, {effect}, z));
+      if (!predicted.allFinite()) continue;
+      Signature signature{.effect = effect,
+                          .shape = shape,
+                          .amplitude = std::min(amplitude, high),
+                          .direction = {},
+                          .change = {}};
+      signature.change = (predicted - at_baseline) / signature.amplitude;
+      signature.direction = beside(data(signature.change));
       const double length = signature.direction.norm();
       // The residual is model less measured: an effect that is missing shows with the other sign.
       signature.score = length > 1e-9 ? -signature.direction.dot(gap) / length : 0.0;
@@ -65,7 +69,8 @@ std::vector<Signature> signatures_of(const ForwardModel& model, const Whitened& 
 }
 
 const Signature* strongest(const std::vector<Signature>& signatures) {
-  const auto best = std::ranges::max_element(signatures, {}, [](const Signature& s) { return std::abs(s.score); });
+  const auto best =
+      std::ranges::max_element(signatures, {}, [](const Signature& s) { return std::abs(s.score); });
   return best == signatures.end() ? nullptr : &*best;
 }
 

@@ -31,6 +31,7 @@ struct Signature {
   Eigen::VectorXd shape;      ///< coordinates of the effect's free numbers beside the amplitude
   double amplitude = 0.0;     ///< coordinate at which the difference was taken
   Eigen::VectorXd direction;  ///< whitened, beside the baseline
+  Eigen::VectorXd change;     ///< of the observations themselves, d ln F per unit of the coordinate
   /// What the residual says of the amplitude: standard normal if the effect is not there.
   double score = 0.0;
 };

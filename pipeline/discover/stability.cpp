@@ -14,27 +14,27 @@ namespace {
 struct Linear {
   Eigen::VectorXd residual;  ///< at z = 0, not whitened
   Eigen::MatrixXd slopes;
+  Eigen::MatrixXd covariance;
   double log_prior = 0.0;
 };
 
 /// ln of the marginal likelihood of some rows: residual ~ N(0, C + J J^T).
-double log_evidence(const Linear& linear, const Eigen::LLT<Eigen::MatrixXd>& root,
-                    const std::vector<Eigen::Index>& rows) {
+double log_evidence(const Linear& linear, const std::vector<Eigen::Index>& rows) {
+  const Eigen::LLT<Eigen::MatrixXd> root(Eigen::MatrixXd(linear.covariance(rows, rows)));
   const Eigen::VectorXd residual = root.matrixL().solve(Eigen::VectorXd(linear.residual(rows)));
-  const Eigen::MatrixXd slopes =
-      root.matrixL().solve(Eigen::MatrixXd(linear.slopes(rows, Eigen::all)));
+  const Eigen::MatrixXd slopes = root.matrixL().solve(Eigen::MatrixXd(linear.slopes(rows, Eigen::all)));
   const Eigen::LLT<Eigen::MatrixXd> curvature(slopes.transpose() * slopes +
                                               Eigen::MatrixXd::Identity(slopes.cols(), slopes.cols()));
   const Eigen::VectorXd along = slopes.transpose() * residual;
   return -0.5 * (residual.squaredNorm() - along.dot(curvature.solve(along))) -
-         curvature.matrixLLT().diagonal().array().log().sum() + linear.log_prior;
+         curvature.matrixLLT().diagonal().array().log().sum() -
+         root.matrixLLT().diagonal().array().log().sum() + linear.log_prior;
 }
 
 }  // namespace
 
-double stability_of(const SearchResult& result, const std::vector<CouponCell>& cells,
-                    const Eigen::MatrixXd& covariance, std::uint64_t seed, int halves, std::size_t rivals) {
-  const Eigen::LLT<Eigen::MatrixXd> whole(covariance);
+double stability_of(const SearchResult& result, const std::vector<CouponCell>& cells, std::uint64_t seed,
+                    int halves, std::size_t rivals) {
   std::vector<Linear> linear;
   std::size_t best = 0;
   bool found = false;
@@ -44,10 +44,10 @@ double stability_of(const SearchResult& result, const std::vector<CouponCell>& c
       best = linear.size();
       found = true;
     }
-    Linear next{.residual = whole.matrixL() * (one.fit.residual - one.fit.jacobian * one.fit.z),
-                .slopes = whole.matrixL() * one.fit.jacobian,
-                .log_prior = one.log_prior};
-    linear.push_back(std::move(next));
+    linear.push_back({.residual = one.fit.data->unwhitened(one.fit.residual - one.fit.jacobian * one.fit.z),
+                      .slopes = one.fit.data->unwhitened(one.fit.jacobian),
+                      .covariance = one.fit.data->covariance(),
+                      .log_prior = one.log_prior});
   }
   if (!found || cells.size() < 4) return 1.0;
   Random random(seed);
@@ -59,9 +59,8 @@ double stability_of(const SearchResult& result, const std::vector<CouponCell>& c
     std::vector<std::size_t> chosen(order.begin(), order.begin() + std::ssize(order) / 2);
     std::ranges::sort(chosen);
     const std::vector<Eigen::Index> rows = rows_of(cells, chosen);
-    const Eigen::LLT<Eigen::MatrixXd> root(Eigen::MatrixXd(covariance(rows, rows)));
     std::vector<double> evidence;
-    for (const Linear& one : linear) evidence.push_back(log_evidence(one, root, rows));
+    for (const Linear& one : linear) evidence.push_back(log_evidence(one, rows));
     // Half of the data may well not tell the effect from none: that is no other name.
     double other = -1e300;
     for (std::size_t k = 0; k < linear.size(); ++k)

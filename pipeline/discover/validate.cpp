@@ -67,8 +67,8 @@ Gap gap_of(const std::vector<HeldOut>& conditions, std::uint64_t seed) {
   double mean = 0.0, cube = 0.0, square = 0.0;
   std::vector<double> without;
   for (const HeldOut& condition : conditions) {
-    without.push_back(shrink_of({all.before - condition.before * condition.before,
-                                 all.after - condition.after * condition.after}));
+    without.push_back(shrink_of(
+        {all.before - condition.before * condition.before, all.after - condition.after * condition.after}));
     mean += without.back() / n;
   }
   for (const double value : without) {

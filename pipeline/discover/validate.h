@@ -13,15 +13,16 @@ struct Gap {
   double floor = 0.0;                ///< what noise alone gives [-]
   double shrink = 0.0;               ///< 1 - after/before
   double shrink_low = 0.0, shrink_high = 0.0;  ///< 95 %, BCa bootstrap over conditions
-  double closed = 0.0;  ///< (before - after)/(before - floor): share of what could be closed; 0 where nothing could
+  double closed =
+      0.0;  ///< (before - after)/(before - floor): share of what could be closed; 0 where nothing could
   int conditions = 0;
 };
 
 /// One held-out condition.
 struct HeldOut {
-  std::size_t cell = 0;                ///< index in the campaign
-  double before = 0.0, after = 0.0;    ///< root mean square over its points of ln F_model - ln F_measured
-  double noise = 0.0;                  ///< standard deviation of its points [-]
+  std::size_t cell = 0;              ///< index in the campaign
+  double before = 0.0, after = 0.0;  ///< root mean square over its points of ln F_model - ln F_measured
+  double noise = 0.0;                ///< standard deviation of its points [-]
 };
 
 /// @param conditions  at least one

@@ -20,13 +20,16 @@ const std::vector<Family>& families() {
   static const std::vector<Family> all{
       {"a tool-temperature effect", {"tool_temperature_film", "tool_temperature_shift", "solidification"}},
       {"a load effect",
-       {"pressure_dependent_area", "adhesion", "boundary_lubrication", "load_cell_offset", "nonuniform_pressure"}},
+       {"pressure_dependent_area", "adhesion", "boundary_lubrication", "load_cell_offset",
+        "nonuniform_pressure"}},
       {"an effect at the start of the pull",
        {"static_peak", "dwell_ageing", "drive_backlash", "sliding_evolution", "wear"}},
       {"a time or slip history effect",
-       {"sliding_evolution", "wear", "film_squeeze_out", "dwell_ageing", "static_peak", "normal_force_relaxation"}},
-      {"a speed effect", {"stick_slip", "shear_heating", "viscosity_plateau", "boundary_lubrication",
-                          "shear_rate", "inertia"}}};
+       {"sliding_evolution", "wear", "film_squeeze_out", "dwell_ageing", "static_peak",
+        "normal_force_relaxation"}},
+      {"a speed effect",
+       {"stick_slip", "shear_heating", "viscosity_plateau", "boundary_lubrication", "shear_rate",
+        "inertia"}}};
   return all;
 }
 
@@ -90,19 +93,19 @@ Decision decide(const ForwardModel& model, const SearchResult& result, const Evi
   Decision decision;
   const double gain = result.best_gain(), shape = top_evidence(evidence.gap_shapes);
   if (evidence.gate_p >= options.gate) {
-    decision.reasons.push_back(
-        fmt::format("The largest of all contrasts and signatures is what noise alone gives in {:.2g} of campaigns.",
-                    evidence.gate_p));
+    decision.reasons.push_back(fmt::format(
+        "The largest of all contrasts and signatures is what noise alone gives in {:.2g} of campaigns.",
+        evidence.gate_p));
     return decision;
   }
   if (gain <= options.bayes_factor && shape <= options.bayes_factor) {
     decision.reasons.push_back(fmt::format(
-        "No effect (ln Bayes factor {:.1f}) and no smooth shape ({:.1f}) is {:g} better than none.", gain, shape,
-        options.bayes_factor));
+        "No effect (ln Bayes factor {:.1f}) and no smooth shape ({:.1f}) is {:g} better than none.", gain,
+        shape, options.bayes_factor));
     return decision;
   }
-  const auto best_of = std::ranges::find_if(
-      result.scored, [](const Scored& one) { return !one.fit.hypothesis.empty(); });
+  const auto best_of =
+      std::ranges::find_if(result.scored, [](const Scored& one) { return !one.fit.hypothesis.empty(); });
   const Scored& best = *best_of;
   const auto size = static_cast<double>(best.fit.residual.size());
   const double before = result.gap.squaredNorm(), after = squared_gap(best.fit);
@@ -116,28 +119,29 @@ Decision decide(const ForwardModel& model, const SearchResult& result, const Evi
 
   const double rest = top_evidence(evidence.rest_shapes);
   const bool something_left = decision.lack_of_fit_p < options.lack_of_fit || rest > options.bayes_factor;
-  if (gain <= options.bayes_factor || shape - gain > options.bayes_factor ||
-      (something_left && decision.excess_removed < options.excess)) {
+  const bool shape_is_better = shape - gain > options.bayes_factor;
+  if (gain <= options.bayes_factor ||
+      (something_left && (shape_is_better || decision.excess_removed < options.excess))) {
     decision.answer = Answer::unknown;
-    decision.reasons.push_back(fmt::format(
-        "A smooth gap over {} (ln Bayes factor {:.1f}) says more than the best name, {} ({:.1f}, which removes "
-        "{:.0f} % of the excess).",
-        evidence.gap_shapes.empty() ? "nothing" : evidence.gap_shapes.front().over, shape, name, gain,
-        100.0 * decision.excess_removed));
+    decision.reasons.push_back(
+        fmt::format("A smooth gap over {} (ln Bayes factor {:.1f}) says more than the best name, {} ({:.1f}, "
+                    "which removes "
+                    "{:.0f} % of the excess).",
+                    evidence.gap_shapes.empty() ? "nothing" : evidence.gap_shapes.front().over, shape, name,
+                    gain, 100.0 * decision.excess_removed));
     return decision;
   }
   const bool alone = best.probability >= options.probability;
   if (alone && evidence.scatter_known && evidence.stability >= options.stability) {
     decision.answer = something_left ? Answer::named_incomplete : Answer::named;
-    decision.reasons.push_back(fmt::format("{} has the probability {:.3f}, ln Bayes factor {:.1f} against none, and "
-                                           "wins in {:.0f} % of half-samples.",
-                                           name, best.probability, gain, 100.0 * evidence.stability));
+    decision.reasons.push_back(
+        fmt::format("{} has the probability {:.3f}, ln Bayes factor {:.1f} against none, and "
+                    "wins in {:.0f} % of half-samples.",
+                    name, best.probability, gain, 100.0 * evidence.stability));
     if (something_left)
-      decision.reasons.push_back(fmt::format("Something is left over: p {:.2g}, smooth gap over {} {:.1f}.",
-                                             decision.lack_of_fit_p,
-                                             evidence.rest_shapes.empty() ? "nothing"
-                                                                          : evidence.rest_shapes.front().over,
-                                             rest));
+      decision.reasons.push_back(
+          fmt::format("Something is left over: p {:.2g}, smooth gap over {} {:.1f}.", decision.lack_of_fit_p,
+                      evidence.rest_shapes.empty() ? "nothing" : evidence.rest_shapes.front().over, rest));
     return decision;
   }
   decision.answer = Answer::one_of;
@@ -149,16 +153,17 @@ Decision decide(const ForwardModel& model, const SearchResult& result, const Evi
             std::ranges::any_of(model.candidates, [&](const Candidate& c) { return c.id == id; }))
           decision.candidate_set.push_back(id);
     decision.group = family_of(decision.candidate_set);
-    decision.reasons.push_back(evidence.scatter_known
-                                   ? fmt::format("{} is most probable ({:.2f}) but wins in only {:.0f} % of "
-                                                 "half-samples; its look-alikes stay open.",
-                                                 name, best.probability, 100.0 * evidence.stability)
-                                   : fmt::format("{} is most probable ({:.2f}), but the scatter is assumed: no one "
-                                                 "name is given, its look-alikes stay open.",
-                                                 name, best.probability));
+    decision.reasons.push_back(
+        evidence.scatter_known
+            ? fmt::format("{} is most probable ({:.2f}) but wins in only {:.0f} % of "
+                          "half-samples; its look-alikes stay open.",
+                          name, best.probability, 100.0 * evidence.stability)
+            : fmt::format("{} is most probable ({:.2f}), but the scatter is assumed: no one "
+                          "name is given, its look-alikes stay open.",
+                          name, best.probability));
   } else {
-    decision.reasons.push_back(fmt::format("The best name, {}, has the probability {:.2f} only.", name,
-                                           best.probability));
+    decision.reasons.push_back(
+        fmt::format("The best name, {}, has the probability {:.2f} only.", name, best.probability));
   }
   return decision;
 }

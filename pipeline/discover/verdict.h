@@ -13,20 +13,20 @@ enum class Answer { no_gap, named, one_of, named_incomplete, unknown };
 const char* in_words(Answer answer);  ///< "NO_GAP", "NAMED", ...
 
 struct VerdictOptions {
-  double gate = 0.01;          ///< family-wise p below which there is a gap
-  double probability = 0.9;    ///< of the one name
-  double set = 0.95;           ///< probability that the candidate set holds
-  double bayes_factor = 3.0;   ///< ln
-  double lack_of_fit = 0.01;   ///< p below which something is left over
-  double excess = 0.8;         ///< share of the excess that a name must remove
-  double stability = 0.8;      ///< share of half-samples in which it wins
+  double gate = 0.01;         ///< family-wise p below which there is a gap
+  double probability = 0.9;   ///< of the one name
+  double set = 0.95;          ///< probability that the candidate set holds
+  double bayes_factor = 3.0;  ///< ln
+  double lack_of_fit = 0.01;  ///< p below which something is left over
+  double excess = 0.8;        ///< share of the excess that a name must remove
+  double stability = 0.8;     ///< share of half-samples in which it wins
 };
 
 /// What is known when the verdict is passed.
 struct Evidence {
   double gate_p = 1.0;
-  bool scatter_known = true;  ///< from replicates or given; else no one name
-  double stability = 1.0;     ///< share of half-samples in which the best hypothesis wins
+  bool scatter_known = true;       ///< from replicates or given; else no one name
+  double stability = 1.0;          ///< share of half-samples in which the best hypothesis wins
   std::vector<Shape> gap_shapes;   ///< of the baseline's gap, best first
   std::vector<Shape> rest_shapes;  ///< of what the best hypothesis leaves over
 };
@@ -39,7 +39,7 @@ struct Decision {
   double probability = 0.0;                ///< of the best hypothesis
   double lack_of_fit_p = 1.0;              ///< of what it leaves over
   double excess_removed = 0.0;
-  std::vector<std::string> reasons;        ///< sentences: which rule decided
+  std::vector<std::string> reasons;  ///< sentences: which rule decided
 };
 
 Decision decide(const ForwardModel& model, const SearchResult& result, const Evidence& evidence,

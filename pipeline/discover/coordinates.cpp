@@ -1,0 +1,60 @@
+#include "pipeline/discover/coordinates.h"
+
+#include <cmath>
+
+namespace heddle::discover {
+
+namespace {
+
+bool to_unit_range(Eigen::VectorXd& values) {
+  const double low = values.minCoeff(), range = values.maxCoeff() - low;
+  if (!(range > 1e-6 * (1.0 + std::abs(low)))) return false;
+  values = (values.array() - low) / range;
+  return true;
+}
+
+}  // namespace
+
+Eigen::VectorXd of_points(const std::vector<CouponCell>& cells,
+                          const std::function<double(const CouponCell&, const CouponPoint&)>& value) {
+  std::vector<double> values;
+  for (const CouponCell& cell : cells)
+    for (const CouponPoint& point : cell.points) values.push_back(value(cell, point));
+  return Eigen::Map<const Eigen::VectorXd>(values.data(), std::ssize(values));
+}
+
+std::vector<Coordinate> coordinates_of(const std::vector<CouponCell>& cells) {
+  std::vector<Coordinate> coordinates;
+  for (const Factor& factor : factors()) {
+    if (std::string(factor.name) == "day") continue;
+    Coordinate one{factor.name, of_points(cells, [&](const CouponCell& cell, const CouponPoint&) {
+                     return factor.of(cell);
+                   })};
+    if (to_unit_range(one.at)) coordinates.push_back(std::move(one));
+  }
+  Coordinate slip{"slip", of_points(cells, [](const CouponCell&, const CouponPoint& point) {
+                    return point.slip > 0.0 ? std::log(point.slip) : 0.0;
+                  })};
+  if (to_unit_range(slip.at)) coordinates.push_back(std::move(slip));
+  return coordinates;
+}
+
+double gaussian(double distance, double length) {
+  const double x = distance / length;
+  return std::exp(-0.5 * x * x);
+}
+
+Eigen::MatrixXd likeness_of(const std::vector<CouponCell>& cells, double length) {
+  Eigen::Index size = 0;
+  for (const CouponCell& cell : cells) size += std::ssize(cell.points);
+  Eigen::MatrixXd likeness = Eigen::MatrixXd::Zero(size, size);
+  for (const Coordinate& c : coordinates_of(cells))
+    for (Eigen::Index j = 0; j < size; ++j)
+      likeness.col(j).array() += ((c.at.array() - c.at[j]).square() * (-0.5 / (length * length))).exp();
+  // What is the same everywhere is the amplitude's own.
+  likeness.rowwise() -= likeness.colwise().mean().eval();
+  likeness.colwise() -= likeness.rowwise().mean().eval();
+  return likeness;
+}
+
+}  // namespace heddle::discover

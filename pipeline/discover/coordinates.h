@@ -1,0 +1,33 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <functional>
+#include <string>
+#include <vector>
+
+#include "pipeline/discover/coupon_campaign.h"
+
+namespace heddle::discover {
+
+/// A coordinate of every observation, 0 to 1 over the campaign.
+struct Coordinate {
+  std::string name;
+  Eigen::VectorXd at;
+};
+
+/// A number of each observation, in the order of cells and points.
+Eigen::VectorXd of_points(const std::vector<CouponCell>& cells,
+                          const std::function<double(const CouponCell&, const CouponPoint&)>& value);
+
+/// The factors that vary (without the day), and the logarithm of the slip where there are histories.
+std::vector<Coordinate> coordinates_of(const std::vector<CouponCell>& cells);
+
+/// exp(-(x/length)^2/2)
+double gaussian(double distance, double length);
+
+/// Covariance of an error of form between two observations, with unit variance over each coordinate: a sum of
+/// smooth functions of one coordinate each (Gaussian kernels). A product of kernels would let the error
+/// wander from cell to cell, which no law's form does. Its mean over the observations is taken out.
+Eigen::MatrixXd likeness_of(const std::vector<CouponCell>& cells, double length);
+
+}  // namespace heddle::discover
