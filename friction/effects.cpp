@@ -109,7 +109,7 @@ bool has_memory(const Effects& effects, bool conduction) {
   return is_on(effects.static_peak) || is_on(effects.sliding_evolution) || is_on(effects.film_squeeze_out) ||
          is_on(effects.dwell_ageing) || is_on(effects.solidification) || is_on(effects.wear) ||
          (is_on(film) && (conduction || film->settling > 0.0)) ||
-         (conduction && is_on(effects.shear_heating));
+         (is_on(effects.shear_heating) && (conduction || effects.shear_heating->settling > 0.0));
 }
 
 }  // namespace heddle::friction

@@ -17,19 +17,28 @@ Context contact_of(const FrictionTestRow& row, const FrictionRig& rig, const Are
   return context;
 }
 
-ContactState state_after_pull(const Model& model, const Context& context, const FrictionRig& rig) {
-  if (!has_memory(model)) return {};
-  // Speed and load are constant, where the memory is advanced exactly: one step each is enough.
-  Context rest = context, pull = context;
-  rest.slip_speed = 0.0;
-  rest.time_step = rig.dwell_before;
-  pull.time_step = rig.pull_length / context.slip_speed;
-  ContactState state = evaluate_unchecked(model, rest, {}).state;
-  state.dwell += rest.time_step;
+ContactState state_after_rest(const Model& model, const Context& context, double rest) {
+  Context still = context;
+  still.slip_speed = 0.0;
+  still.time_step = rest;
+  ContactState state = evaluate_unchecked(model, still, {}).state;
+  state.dwell += rest;
+  return state;
+}
+
+ContactState state_after_slip(const Model& model, const Context& context, ContactState state, double slip) {
+  Context pull = context;
+  pull.time_step = slip / context.slip_speed;
   state = evaluate_unchecked(model, pull, state).state;
   state.dwell += pull.time_step;
-  state.slip += rig.pull_length;
+  state.slip += slip;
   return state;
+}
+
+ContactState state_after_pull(const Model& model, const Context& context, const FrictionRig& rig) {
+  if (!has_memory(model)) return {};
+  return state_after_slip(model, context, state_after_rest(model, context, rig.dwell_before),
+                          rig.pull_length);
 }
 
 FrictionTestResult run_friction_test(const Model& model, const FrictionTestRow& row, const FrictionRig& rig,

@@ -53,6 +53,11 @@ struct FrictionTestResult {
 /// The contact under one plate: p = N / A.
 Context contact_of(const FrictionTestRow& row, const FrictionRig& rig, const AreaFunction& area = {});
 
+/// What the contact has gone through after a rest under load [s], and after a slip [m] at the context's speed
+/// from some state. Speed and load are constant, where the memory is advanced exactly: one step is enough.
+ContactState state_after_rest(const Model& model, const Context& context, double rest);
+ContactState state_after_slip(const Model& model, const Context& context, ContactState state, double slip);
+
 /// What the contact has gone through when the force is read: rest, then a pull at the row's speed and load.
 ContactState state_after_pull(const Model& model, const Context& context, const FrictionRig& rig);
 

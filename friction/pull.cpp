@@ -2,23 +2,10 @@
 
 namespace heddle::friction {
 
-namespace {
-
-ContactState state_after_rest(const Model& model, const Context& context, const FrictionRig& rig) {
-  Context rest = context;
-  rest.slip_speed = 0.0;
-  rest.time_step = rig.dwell_before;
-  ContactState state = evaluate(model, rest, {}).state;
-  state.dwell += rig.dwell_before;
-  return state;
-}
-
-}  // namespace
-
 std::vector<PullPoint> pull_history(const Model& model, const FrictionTestRow& row, const FrictionRig& rig,
                                     int steps, const AreaFunction& area) {
   Context context = contact_of(row, rig, area);
-  ContactState state = state_after_rest(model, context, rig);
+  ContactState state = state_after_rest(model, context, rig.dwell_before);
   const double slip_step = rig.pull_length / steps;
   const double time_step = slip_step / row.velocity;
   std::vector<PullPoint> points;

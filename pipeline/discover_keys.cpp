@@ -72,7 +72,7 @@ std::vector<Key> discover_keys() {
       quantity("noise.history", "%", "1 %", "[0, 1]",
                "How far a pull may be from even along its slip, alike in all conditions, before that counts; "
                "prior."),
-      quantity("noise.effect_form", "%", "15 %", "[0, 1]",
+      quantity("noise.effect_form", "%", "25 %", "[0, 1]",
                "How far the form of a library effect may be off, as share of what it does to ln F; prior."),
       quantity("noise.effect_form_length", "", "0.5", "(0, 100]",
                "Over what share of the range of each factor that error wanders; prior."),

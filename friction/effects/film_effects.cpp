@@ -76,10 +76,13 @@ Sensitive viscosity_with(const ViscosityPlateau& effect, const Sensitive& viscos
 }
 
 Sensitive heating_strength(const ShearHeating& effect, const Inputs& inputs, double rest_speed) {
-  if (!inputs.conduction) return effect.amplitude / (8.0 * effect.conductivity);
-  // The heat that counts is the last few h^2/alpha's; over those a point slides at about its present speed.
+  const double settled = effect.amplitude / (8.0 * effect.conductivity);
+  if (!inputs.conduction && effect.settling == 0.0) return settled;
+  // The heat that counts is that of the last settling times; over those a point slides at about its present
+  // speed.
   const Sensitive sheared =
       inputs.slip / sqrt(inputs.slip_speed * inputs.slip_speed + rest_speed * rest_speed);
+  if (!inputs.conduction) return settled * settled_share(sheared / effect.settling);
   return 12.0 * effect.amplitude / (8.0 * inputs.conduction->spec.film_conductivity) *
          heating_rise(*inputs.conduction, sheared);
 }

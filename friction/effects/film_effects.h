@@ -34,12 +34,15 @@ struct FilmSqueezeOut {
 
 /// Effect F12: the film heats itself, eta *= asinh(sqrt x)/sqrt(x (1 + x)) with x = A Na/8 and the Nahme
 /// number Na = beta eta U^2/k, beta = -d ln a/dT (plane Couette flow between walls at the film's temperature;
-/// Nahme 1940). A = 1: both walls held; 4: one of them adiabatic. With a film conduction k is the melt's
+/// Nahme 1940). A = 1: both walls held; 4: one of them adiabatic; up to 8 L/h where the heat leaves through a
+/// ply of thickness L. Walls warm as the pull goes on: A is multiplied by S of effect F1 at s/(U t_s), t_s = 0
+/// at once. With a film conduction k is the melt's
 /// there and A is multiplied by 12 times its heating rise (1/12 between held walls) after the time s/U for
 /// which the film has been sheared, so that A = 1 is the whole of it.
 struct ShearHeating {
   double amplitude = 0.0;      ///< A [-], >= 0; 0 = off
   double conductivity = 0.19;  ///< k [W/(m K)], > 0
+  double settling = 0.0;       ///< t_s [s], >= 0
 };
 
 /// Effect F14: a Newtonian plateau at low rate, 1/eta' = 1/eta + 1/(a eta0). On a power law this is Cross's
@@ -114,7 +117,9 @@ struct About<ShearHeating> {
       Field<ShearHeating>{"amplitude", "", &ShearHeating::amplitude, not_negative,
                           "0 is off, 1 both walls held, 4 one adiabatic."},
       Field<ShearHeating>{"conductivity", "W/(m K)", &ShearHeating::conductivity, positive_range,
-                          "Of the melt."}};
+                          "Of the melt."},
+      Field<ShearHeating>{"settling", "s", &ShearHeating::settling, not_negative,
+                          "Time of sliding over which the walls warm; 0 s settles at once."}};
 };
 template <>
 struct About<ViscosityPlateau> {

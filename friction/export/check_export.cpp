@@ -32,6 +32,10 @@ Problems check_export(const Model& model) {
       problems.push_back(
           memory_problem(fmt::format("effects.{}", About<E>::id), "", "Leave it out: --set effects.ID=off."));
   };
+  if (is_on(effects.shear_heating) && effects.shear_heating->settling > 0.0)
+    problems.push_back(memory_problem("effects.shear_heating.settling",
+                                      fmt::format("{} s", effects.shear_heating->settling),
+                                      "Write 0 s: walls that are warm at once."));
   if (is_on(effects.tool_temperature_film) && effects.tool_temperature_film->settling > 0.0)
     problems.push_back(memory_problem("effects.tool_temperature_film.settling",
                                       fmt::format("{} s", effects.tool_temperature_film->settling),

@@ -22,7 +22,9 @@ struct RigEffects {
   double drift = 0.0;                            // R3
   double backlash = 0.0, backlash_length = 1.0;  // R4
   double contrast = 0.0;                         // R5
-  double from = -1.0, truly = -1.0;              // R6, cells
+  /// R6: a cell, the condition that its forces belong to, and the cell that has the label of that one where
+  /// two labels are exchanged; none: negative.
+  double from = -1.0, truly = -1.0, partner = -1.0;
 
   double* find(std::string_view key) {
     if (key == "rig.normal_force_relaxation.loss") return &loss;
@@ -32,8 +34,6 @@ struct RigEffects {
     if (key == "rig.drive_backlash.loss") return &backlash;
     if (key == "rig.drive_backlash.length") return &backlash_length;
     if (key == "rig.nonuniform_pressure.contrast") return &contrast;
-    if (key == "rig.mislabelled_condition.from") return &from;
-    if (key == "rig.mislabelled_condition.swapped") return &truly;
     return nullptr;
   }
 };
@@ -51,23 +51,25 @@ bool is_rig_key(const std::string& key) {
 
 class CouponPredictor {
  public:
-  CouponPredictor(const friction::Model& base, CouponRig rig, std::vector<CouponCell> cells, std::size_t days)
-      : base_(base), rig_(std::move(rig)), cells_(std::move(cells)), days_(days) {
-    for (const CouponCell& cell : cells_) {
+  /// @param others  conditions that a wrong label may stand for; they come after the cells
+  CouponPredictor(CouponRig rig, std::vector<CouponCell> cells, const std::vector<CouponCell>& others,
+                  std::size_t days)
+      : rig_(std::move(rig)), cells_(std::move(cells)), predicted_(cells_.size()), days_(days) {
+    for (const CouponCell& cell : cells_) size_ += std::ssize(cell.points);
+    cells_.insert(cells_.end(), others.begin(), others.end());
+    for (const CouponCell& cell : cells_)
       contexts_.push_back(friction::contact_of(cell.pull, rig_.rig, rig_.area));
-      size_ += std::ssize(cell.points);
-    }
   }
 
   Eigen::VectorXd operator()(const friction::Model& model, const RigEffects& rig) const {
     const bool memory = friction::has_memory(model);
     Eigen::VectorXd log_force(size_);
     Eigen::Index at = 0;
-    for (std::size_t c = 0; c < cells_.size(); ++c) {
-      const std::size_t acting = rig.truly >= 0.0 && c == static_cast<std::size_t>(rig.from)
-                                     ? static_cast<std::size_t>(rig.truly)
-                                     : c;
-      std::optional<double> steady;  // mu of the cell, where the point does not matter
+    for (std::size_t c = 0; c < predicted_; ++c) {
+      const std::size_t acting = acting_on(c, rig);
+      std::optional<double> steady;                  // mu of the cell, where the point does not matter
+      std::optional<friction::ContactState> rested;  // what all points of the cell start from
+      const friction::ContactState unloaded;
       for (const CouponPoint& point : cells_[c].points) {
         // A cell that carries the label of another was pressed with the other's load.
         const double load = acting == c ? point.normal_force : cells_[acting].pull.normal_force;
@@ -75,14 +77,17 @@ class CouponPredictor {
         const bool special = memory || relaxing || rig.contrast != 0.0;
         double force;
         if (!special) {
-          if (!steady) steady = coefficient(model, acting, cells_[acting].pull.normal_force, point);
+          if (!steady) steady = coefficient(model, acting, cells_[acting].pull.normal_force, point, {});
           force = rig_.faces * *steady * load;
         } else {
           const double time = cells_[acting].dwell + slip_of(point) / cells_[acting].pull.velocity;
           const double acts =
               relaxing ? load * (1.0 - rig.loss * (1.0 - std::exp(-time / rig.loss_time))) : load;
-          force = rig.contrast == 0.0 ? rig_.faces * coefficient(model, acting, acts, point) * acts
-                                      : uneven_force(model, rig, acting, acts, point);
+          if (memory && !rested)
+            rested = friction::state_after_rest(model, contexts_[acting], cells_[acting].dwell);
+          const friction::ContactState& start = rested ? *rested : unloaded;
+          force = rig.contrast == 0.0 ? rig_.faces * coefficient(model, acting, acts, point, start) * acts
+                                      : uneven_force(model, rig, acting, acts, point, start);
         }
         log_force[at++] = std::log(force + rig.offset) + gain(rig, c, point);
       }
@@ -91,28 +96,39 @@ class CouponPredictor {
   }
 
  private:
+  static std::size_t acting_on(std::size_t cell, const RigEffects& rig) {
+    if (rig.truly < 0.0) return cell;
+    if (cell == static_cast<std::size_t>(rig.from)) return static_cast<std::size_t>(rig.truly);
+    if (rig.partner >= 0.0 && cell == static_cast<std::size_t>(rig.partner))
+      return static_cast<std::size_t>(rig.from);
+    return cell;
+  }
+
   double slip_of(const CouponPoint& point) const { return point.steady ? rig_.rig.pull_length : point.slip; }
 
-  double coefficient(const friction::Model& model, std::size_t cell, double load,
-                     const CouponPoint& point) const {
-    friction::PullReading reading{
-        .context = contexts_[cell], .slip = slip_of(point), .dwell = cells_[cell].dwell};
+  /// mu of a point. The load of a point that relaxes differs from the one its rest was under by little: the
+  /// rest is that of the cell.
+  double coefficient(const friction::Model& model, std::size_t cell, double load, const CouponPoint& point,
+                     const friction::ContactState& rested) const {
+    friction::Context context = contexts_[cell];
     if (load != cells_[cell].pull.normal_force) {
       friction::FrictionTestRow pull = cells_[cell].pull;
       pull.normal_force = load;
-      reading.context = friction::contact_of(pull, rig_.rig, rig_.area);
+      context = friction::contact_of(pull, rig_.rig, rig_.area);
     }
-    return friction::coefficient_of(model, reading);
+    if (!friction::has_memory(model)) return friction::evaluate_unchecked(model, context, {}).mu;
+    const friction::ContactState state = friction::state_after_slip(model, context, rested, slip_of(point));
+    return friction::evaluate_unchecked(model, context, state).mu;
   }
 
   /// Half of each plate takes more, half less.
   double uneven_force(const friction::Model& model, const RigEffects& rig, std::size_t cell, double load,
-                      const CouponPoint& point) const {
+                      const CouponPoint& point, const friction::ContactState& rested) const {
     constexpr double baseline_load = 1500.0;  // [N] (paper, Table 2)
     const double share = std::min(rig.contrast * load / baseline_load, 0.95);
     double force = 0.0;
     for (const double factor : {1.0 + share, 1.0 - share})
-      force += 0.5 * rig_.faces * coefficient(model, cell, factor * load, point) * factor * load;
+      force += 0.5 * rig_.faces * coefficient(model, cell, factor * load, point, rested) * factor * load;
     return force;
   }
 
@@ -126,9 +142,9 @@ class CouponPredictor {
     return log_gain;
   }
 
-  friction::Model base_;
   CouponRig rig_;
-  std::vector<CouponCell> cells_;
+  std::vector<CouponCell> cells_;  ///< the predicted ones first
+  std::size_t predicted_;
   std::size_t days_;
   std::vector<friction::Context> contexts_;
   Eigen::Index size_ = 0;
@@ -156,19 +172,21 @@ friction::Model patched_model(const friction::Model& base, const ForwardModel& f
 
 ForwardModel coupon_forward(const friction::Model& base, const CouponRig& rig,
                             const std::vector<CouponCell>& cells, std::vector<Unknown> baseline,
-                            const std::vector<EffectFile>& effects, std::size_t days) {
+                            const std::vector<EffectFile>& effects, std::size_t days,
+                            const std::vector<CouponCell>& others) {
   ForwardModel forward;
   forward.baseline = std::move(baseline);
   for (const EffectFile& effect : effects) forward.candidates.push_back(effect.candidate());
-  const auto predictor = std::make_shared<const CouponPredictor>(base, rig, cells, days);
+  const auto predictor = std::make_shared<const CouponPredictor>(rig, cells, others, days);
   // The candidates may grow after this (R6): a prediction looks at those it was made with, and a copy is
   // cheap.
   forward.predict = [predictor, base, numbers = forward](const Trial& trial) {
     RigEffects rig_effects;
     for (const auto& [effect, values] : trial.effects) {
-      if (effect >= numbers.candidates.size()) {  // R6: {from, truly}
+      if (effect >= numbers.candidates.size()) {  // R6
         rig_effects.from = values[0];
         rig_effects.truly = values[1];
+        rig_effects.partner = values[2];
         continue;
       }
       const std::vector<Unknown>& known = numbers.candidates[effect].numbers;
@@ -225,18 +243,21 @@ std::vector<EffectFile> usable_effects(const friction::Model& base, const std::v
   return usable;
 }
 
-Candidate mislabelled(const Candidate& library, const std::vector<CouponCell>& cells, std::size_t cell,
-                      std::size_t truly) {
+Candidate mislabelled(const Candidate& library, const WrongLabel& label, const std::string& words,
+                      std::size_t conditions) {
   Candidate candidate = library;
-  const auto index = [](std::size_t k) {
-    return Prior{.kind = Prior::Kind::fixed, .centre = static_cast<double>(k)};
-  };
-  candidate.numbers = {{.key = "rig.mislabelled_condition.from", .unit = "", .prior = index(cell)},
-                       {.key = "rig.mislabelled_condition.swapped", .unit = "", .prior = index(truly)}};
-  const auto count = static_cast<double>(cells.size());
+  const auto index = [](double k) { return Prior{.kind = Prior::Kind::fixed, .centre = k}; };
+  candidate.numbers = {
+      {.key = "rig.mislabelled_condition.from", .unit = "", .prior = index(static_cast<double>(label.cell))},
+      {.key = "rig.mislabelled_condition.truly",
+       .unit = "",
+       .prior = index(static_cast<double>(label.truly))},
+      {.key = "rig.mislabelled_condition.partner",
+       .unit = "",
+       .prior = index(label.partner ? static_cast<double>(*label.partner) : -1.0)}};
+  const auto count = static_cast<double>(conditions);
   candidate.log_weight = -std::log(count * (count - 1.0));
-  candidate.detail =
-      fmt::format("{} measured under the label {}", cells[truly].pull.name, cells[cell].pull.name);
+  candidate.detail = words;
   return candidate;
 }
 

@@ -30,32 +30,51 @@ Observations observations_of(const std::vector<CouponCell>& cells, const CouponN
   return observations;
 }
 
-/// R6: the cell that lies furthest from the baseline, and the conditions whose forces it may carry.
+/// R6: the cell that lies furthest from the baseline, and the conditions whose forces it may carry: the three
+/// whose predicted force is nearest to what was measured under the label, one way and exchanged.
 void add_mislabelled(CouponFindings& findings, const CouponQuestion& question, const MapFit& baseline) {
   const auto library = std::ranges::find(question.effects, "mislabelled_condition", &EffectFile::id);
-  if (library == question.effects.end() || findings.training.size() < 6) return;
-  const Eigen::VectorXd predicted = findings.forward.predict(baseline.trial);
-  std::vector<double> off(findings.training.size(), 0.0), mean(findings.training.size(), 0.0);
+  const std::vector<CouponCell>& training = findings.training;
+  if (library == question.effects.end() || training.size() < 6) return;
+  std::vector<CouponCell> all = training;
+  const std::vector<CouponCell> held_out = pick(findings.campaign.cells, findings.split.held_out);
+  all.insert(all.end(), held_out.begin(), held_out.end());
+  const Eigen::VectorXd predicted =
+      coupon_forward(question.base, question.rig, all, question.baseline, {}, findings.campaign.days.size())
+          .predict(baseline.trial);
+  std::vector<double> off, mean;
   Eigen::Index row = 0;
-  for (std::size_t c = 0; c < findings.training.size(); ++c) {
-    const auto count = static_cast<double>(findings.training[c].points.size());
-    for (const CouponPoint& point : findings.training[c].points) {
-      off[c] += (point.log_force - predicted[row]) / count;
-      mean[c] += predicted[row++] / count;
+  for (const CouponCell& cell : all) {
+    const auto count = static_cast<double>(cell.points.size());
+    off.push_back(0.0);
+    mean.push_back(0.0);
+    for (const CouponPoint& point : cell.points) {
+      off.back() += (point.log_force - predicted[row]) / count;
+      mean.back() += predicted[row++] / count;
     }
   }
+  off.resize(training.size());
   const auto worst = static_cast<std::size_t>(
       std::ranges::max_element(off, {}, [](double x) { return std::abs(x); }) - off.begin());
-  // The three conditions whose predicted force is nearest to what was measured under the label.
   std::vector<std::size_t> order;
-  for (std::size_t c = 0; c < mean.size(); ++c)
-    if (c != worst && findings.training[c].condition != findings.training[worst].condition)
-      order.push_back(c);
+  for (std::size_t c = 0; c < all.size(); ++c)
+    if (all[c].condition != training[worst].condition) order.push_back(c);
   std::ranges::stable_sort(order, {},
                            [&](std::size_t c) { return std::abs(mean[c] - mean[worst] - off[worst]); });
   order.resize(std::min<std::size_t>(order.size(), 3));
-  for (const std::size_t truly : order)
-    findings.forward.candidates.push_back(mislabelled(library->candidate(), findings.training, worst, truly));
+  for (const std::size_t truly : order) {
+    const std::string under =
+        fmt::format("{} measured under the label of {}", all[truly].pull.name, training[worst].pull.name);
+    const auto add = [&](const WrongLabel& label, const std::string& words) {
+      findings.forward.candidates.push_back(
+          mislabelled(library->candidate(), label, words, findings.campaign.condition_names.size()));
+    };
+    // Numbered as the forward model does: training cells, then all conditions.
+    add({.cell = worst, .truly = training.size() + truly}, under);
+    if (truly < training.size())
+      add({.cell = worst, .truly = training.size() + truly, .partner = truly},
+          under + ", and the other way round");
+  }
 }
 
 /// What a trial predicts of other cells. A wrong label belongs to the cell that carries it.
@@ -69,12 +88,37 @@ Eigen::VectorXd predict_elsewhere(const CouponQuestion& question, const CouponFi
   return elsewhere.predict(trial);
 }
 
+/// What the training pulls of each day say of the day's shift of ln F under a fit: its mean given their
+/// residuals, and its variance. A held-out cell shares the shift of its day.
+struct DayShifts {
+  std::vector<double> mean, variance;
+};
+
+DayShifts shifts_of(const CouponFindings& findings, const MapFit& fit) {
+  const std::size_t days = findings.campaign.days.size();
+  const auto size = fit.residual.size();
+  Eigen::MatrixXd share = Eigen::MatrixXd::Zero(size, static_cast<Eigen::Index>(days));
+  Eigen::Index row = 0;
+  for (const CouponCell& cell : findings.training)
+    for (std::size_t k = 0; k < cell.points.size(); ++k)
+      share(row++, static_cast<Eigen::Index>(cell.day)) = 1.0;
+  const double square = findings.noise.day * findings.noise.day;
+  const Eigen::MatrixXd whitened = (*fit.data)(share);
+  DayShifts shifts;
+  for (Eigen::Index day = 0; day < share.cols(); ++day) {
+    shifts.mean.push_back(-square * whitened.col(day).dot(fit.residual));  // measured less model
+    shifts.variance.push_back(square - square * square * whitened.col(day).squaredNorm());
+  }
+  return shifts;
+}
+
 std::vector<HeldOut> validate(const CouponQuestion& question, const CouponFindings& findings,
                               const MapFit& after, std::size_t library_size) {
   const std::vector<CouponCell> cells = pick(findings.campaign.cells, findings.split.held_out);
-  const Eigen::VectorXd base =
-      predict_elsewhere(question, findings, cells, findings.result.baseline.trial, library_size);
+  const MapFit& before = findings.result.baseline;
+  const Eigen::VectorXd base = predict_elsewhere(question, findings, cells, before.trial, library_size);
   const Eigen::VectorXd with = predict_elsewhere(question, findings, cells, after.trial, library_size);
+  const DayShifts days_before = shifts_of(findings, before), days_after = shifts_of(findings, after);
   std::vector<HeldOut> held_out;
   Eigen::Index row = 0;
   for (std::size_t c = 0; c < cells.size(); ++c) {
@@ -82,11 +126,12 @@ std::vector<HeldOut> validate(const CouponQuestion& question, const CouponFindin
     const auto count = static_cast<double>(cells[c].points.size());
     double noise = 0.0;
     for (const CouponPoint& point : cells[c].points) {
-      const double b = base[row] - point.log_force, a = with[row] - point.log_force;
+      const double b = base[row] + days_before.mean[cells[c].day] - point.log_force,
+                   a = with[row] + days_after.mean[cells[c].day] - point.log_force;
       one.before += b * b / count;
       one.after += a * a / count;
       noise += (findings.noise.sample(point.stretch, point.stretch) / cells[c].samples +
-                findings.noise.day * findings.noise.day) /
+                days_after.variance[cells[c].day]) /
                count;
       ++row;
     }
@@ -156,8 +201,11 @@ CouponFindings discover_in_coupons(const CouponQuestion& question, const frictio
   findings.notes.insert(findings.notes.end(), findings.noise.notes.begin(), findings.noise.notes.end());
 
   const std::vector<EffectFile> usable = usable_effects(question.base, question.effects, &findings.refused);
+  std::vector<CouponCell> conditions = findings.training;
+  const std::vector<CouponCell> unseen = pick(findings.campaign.cells, findings.split.held_out);
+  conditions.insert(conditions.end(), unseen.begin(), unseen.end());
   findings.forward = coupon_forward(question.base, question.rig, findings.training, question.baseline, usable,
-                                    findings.campaign.days.size());
+                                    findings.campaign.days.size(), conditions);
   const std::size_t library_size = findings.forward.candidates.size();
 
   // The form of the law wanders over ln Hs, which only a fitted law knows: fit, then weigh, then fit again.

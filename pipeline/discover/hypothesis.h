@@ -59,7 +59,7 @@ struct Observations {
   /// How alike the error of an effect's form is at two observations. Nature's form of an effect is not the
   /// library's: what it does to ln F may be off by a share `form` of itself over each coordinate, smoothly.
   Eigen::MatrixXd likeness = {};  ///< of size 0: forms are taken as exact
-  double form = 0.15;
+  double form = 0.25;
 };
 
 /// Candidates that are on, by number, rising. Empty: the baseline.

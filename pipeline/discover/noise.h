@@ -26,7 +26,7 @@ struct NoiseWish {
   double history = 0.01;
   /// The same of an effect: a share of what it does to ln F over each factor and over ln slip, wandering over
   /// this share of their ranges.
-  double effect_form = 0.15;
+  double effect_form = 0.25;
   double effect_form_length = 0.5;
 };
 

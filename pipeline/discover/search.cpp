@@ -62,23 +62,34 @@ Eigen::VectorXd joined(const MapFit& baseline, const MapFit& first, const MapFit
   return z;
 }
 
+/// Pairs of the best single effects with those that what they leave over asks for: a linear look at the score
+/// of each candidate's signatures on the rest, since a pair must gain `bayes_factor` on its better half.
 std::vector<Hypothesis> pairs_to_try(const std::vector<Scored>& singles,
-                                     const std::vector<Signature>& signatures, const ForwardModel& model,
-                                     const SearchOptions& options) {
-  std::vector<std::size_t> by_evidence, by_score;
-  for (const Scored& single : singles) by_evidence.push_back(single.fit.hypothesis[0]);
-  for (const Signature& signature : signatures) by_score.push_back(signature.effect);
-  std::ranges::stable_sort(by_score, std::greater{}, [&](std::size_t effect) {
-    const auto of = std::ranges::find(signatures, effect, &Signature::effect);
-    return std::abs(of->score);
-  });
-  by_evidence.resize(std::min(by_evidence.size(), options.pairs_of));
-  by_score.resize(std::min(by_score.size(), options.partners));
+                                     const std::vector<std::vector<Signature>>& signatures,
+                                     const ForwardModel& model, const SearchOptions& options) {
   std::set<Hypothesis> pairs;
-  for (const std::size_t a : by_evidence)
-    for (const auto* list : {&by_evidence, &by_score})
-      for (const std::size_t b : *list)
-        if (model.candidates[a].id != model.candidates[b].id) pairs.insert({std::min(a, b), std::max(a, b)});
+  for (std::size_t k = 0; k < std::min(singles.size(), options.pairs_of); ++k) {
+    const MapFit& fit = singles[k].exact;
+    const std::size_t first = fit.hypothesis[0];
+    const BesideBaseline beside(fit.jacobian);
+    const Eigen::VectorXd gap = beside.gap_of(fit.residual);
+    std::vector<std::pair<double, std::size_t>> partners;
+    for (std::size_t other = 0; other < signatures.size(); ++other) {
+      if (model.candidates[other].id == model.candidates[first].id) continue;
+      double score = 0.0;
+      for (const Signature& signature : signatures[other]) {
+        const Eigen::VectorXd direction = beside((*fit.data)(signature.change));
+        const double along = -direction.dot(gap) / direction.norm();
+        const auto [low, high] = model.candidates[other].numbers.front().prior.bounds();
+        score = std::max(score, low >= 0.0 ? along : std::abs(along));
+      }
+      if (0.5 * score * score > options.bayes_factor) partners.emplace_back(score, other);
+    }
+    std::ranges::sort(partners, std::greater{});
+    partners.resize(std::min(partners.size(), options.partners));
+    for (const auto& [score, other] : partners)
+      pairs.insert({std::min(first, other), std::max(first, other)});
+  }
   return {pairs.begin(), pairs.end()};
 }
 
@@ -149,7 +160,7 @@ SearchResult search(const ForwardModel& model, const Observations& observations,
   result.scored.push_back({.fit = result.baseline, .exact = result.baseline, .log_prior = prior.of({})});
   // A pair can only win where a single effect does better than none.
   if (result.best_gain() > options.bayes_factor) {
-    std::vector<Hypothesis> pairs = pairs_to_try(singles, result.signatures, model, options);
+    std::vector<Hypothesis> pairs = pairs_to_try(singles, signatures, model, options);
     std::erase_if(pairs, [&](const Hypothesis& pair) {
       return !std::isfinite(by_effect[pair[0]].log_evidence) ||
              !std::isfinite(by_effect[pair[1]].log_evidence);

@@ -16,8 +16,8 @@ struct SearchOptions {
   double one_effect = 0.4;    ///< shared evenly by all ids
   double two_effects = 0.1;   ///< shared evenly by all pairs
   double bayes_factor = 3.0;  ///< ln, that each effect more must gain
-  std::size_t pairs_of = 5;   ///< single effects whose pairs are tried, the best by evidence
-  std::size_t partners = 12;  ///< with how many of the strongest by score
+  std::size_t pairs_of = 4;   ///< single effects whose pairs are tried, the best by evidence
+  std::size_t partners = 6;   ///< of each, the strongest by their score on what the first leaves over
 };
 
 /// One hypothesis that was fitted, with its probability among all that were.

@@ -20,9 +20,11 @@ struct Gap {
 
 /// One held-out condition.
 struct HeldOut {
-  std::size_t cell = 0;              ///< index in the campaign
-  double before = 0.0, after = 0.0;  ///< root mean square over its points of ln F_model - ln F_measured
-  double noise = 0.0;                ///< standard deviation of its points [-]
+  std::size_t cell = 0;  ///< index in the campaign
+  /// Root mean square over its points of ln F_model - ln F_measured, with the shift of its day as the
+  /// training pulls of that day show it.
+  double before = 0.0, after = 0.0;
+  double noise = 0.0;  ///< standard deviation of its points [-]
 };
 
 /// @param conditions  at least one

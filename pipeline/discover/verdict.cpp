@@ -119,9 +119,10 @@ Decision decide(const ForwardModel& model, const SearchResult& result, const Evi
 
   const double rest = top_evidence(evidence.rest_shapes);
   const bool something_left = decision.lack_of_fit_p < options.lack_of_fit || rest > options.bayes_factor;
-  const bool shape_is_better = shape - gain > options.bayes_factor;
+  // What a free shape says of the gap is the measure of what a name may miss.
+  const double captured = shape > options.bayes_factor ? gain / shape : 1.0;
   if (gain <= options.bayes_factor ||
-      (something_left && (shape_is_better || decision.excess_removed < options.excess))) {
+      (something_left && (captured < options.captured || decision.excess_removed < options.excess))) {
     decision.answer = Answer::unknown;
     decision.reasons.push_back(
         fmt::format("A smooth gap over {} (ln Bayes factor {:.1f}) says more than the best name, {} ({:.1f}, "
@@ -133,15 +134,17 @@ Decision decide(const ForwardModel& model, const SearchResult& result, const Evi
   }
   const bool alone = best.probability >= options.probability;
   if (alone && evidence.scatter_known && evidence.stability >= options.stability) {
-    decision.answer = something_left ? Answer::named_incomplete : Answer::named;
+    const bool incomplete = something_left || decision.excess_removed < options.excess;
+    decision.answer = incomplete ? Answer::named_incomplete : Answer::named;
     decision.reasons.push_back(
         fmt::format("{} has the probability {:.3f}, ln Bayes factor {:.1f} against none, and "
                     "wins in {:.0f} % of half-samples.",
                     name, best.probability, gain, 100.0 * evidence.stability));
-    if (something_left)
-      decision.reasons.push_back(
-          fmt::format("Something is left over: p {:.2g}, smooth gap over {} {:.1f}.", decision.lack_of_fit_p,
-                      evidence.rest_shapes.empty() ? "nothing" : evidence.rest_shapes.front().over, rest));
+    if (incomplete)
+      decision.reasons.push_back(fmt::format(
+          "Something is left over: {:.0f} % of the excess is removed, p {:.2g}, smooth gap over {} {:.1f}.",
+          100.0 * decision.excess_removed, decision.lack_of_fit_p,
+          evidence.rest_shapes.empty() ? "nothing" : evidence.rest_shapes.front().over, rest));
     return decision;
   }
   decision.answer = Answer::one_of;

@@ -18,7 +18,8 @@ struct VerdictOptions {
   double set = 0.95;          ///< probability that the candidate set holds
   double bayes_factor = 3.0;  ///< ln
   double lack_of_fit = 0.01;  ///< p below which something is left over
-  double excess = 0.8;        ///< share of the excess that a name must remove
+  double excess = 0.8;        ///< share of the excess chi-square that a name must remove
+  double captured = 0.75;     ///< share of a free shape's ln Bayes factor that a name must reach
   double stability = 0.8;     ///< share of half-samples in which it wins
 };
 

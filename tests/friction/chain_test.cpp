@@ -230,6 +230,15 @@ TEST_CASE("slopes agree with differences at the knees of the laws", "[friction][
       CHECK(worst_gap(model, base, 1.01) > 1e-4);  // the check can fail
     }
   }
+  SECTION("shear heating while the walls warm") {
+    Model model = model_of(HerseyPower{.scale = 0.325, .exponent = 0.136});
+    for (const double settling : {1e-4, 0.05, 5.0}) {
+      model.effects.shear_heating = ShearHeating{.amplitude = 100.0, .settling = settling};
+      CAPTURE(settling);
+      CHECK(worst_gap(model, base) < 1e-6);
+      CHECK(worst_gap(model, base, 1.01) > 1e-4);  // the check can fail
+    }
+  }
   SECTION("at rest and without load") {
     for (const Law& law : every_law()) {
       Point still = base;
