@@ -1,0 +1,59 @@
+#include <CLI/CLI.hpp>
+#include <exception>
+#include <filesystem>
+#include <iostream>
+
+#include "judge.h"
+#include "pipeline/outputs.h"
+
+/// Scores campaigns of the blind test: figures on standard output, the page docs/blind.md, a line in
+/// docs/blind.csv.
+namespace {
+
+namespace fs = std::filesystem;
+using namespace heddle;
+
+struct Options {
+  std::vector<fs::path> folders;
+  fs::path page, record;
+  std::string date;
+};
+
+/// Lines are only ever added.
+void append(const fs::path& file, const std::string& line) {
+  const std::string before = fs::exists(file) ? pipeline::read_file(file) : blind::record_header();
+  pipeline::write_file(file, before + line);
+}
+
+int run(const Options& options) {
+  std::vector<blind::Scored> campaigns;
+  for (const fs::path& folder : options.folders) campaigns.push_back(blind::judge(blind::Store(folder)));
+  for (const blind::Scored& campaign : campaigns) {
+    std::cout << blind::summary(campaign);
+    if (!options.record.empty()) append(options.record, blind::record_line(campaign, options.date));
+  }
+  if (!options.page.empty()) pipeline::write_file(options.page, blind::page(campaigns));
+  return 0;
+}
+
+}  // namespace
+
+int main(int count, char** values) {
+  CLI::App app("Scores campaigns of the blind test of heddle discover");
+  Options options;
+  app.add_option("folders", options.folders, "of finished campaigns")
+      ->required()
+      ->check(CLI::ExistingDirectory);
+  app.add_option("--page", options.page, "writes the whole page, for instance docs/blind.md");
+  auto* record =
+      app.add_option("--record", options.record, "appends a line a campaign, for instance to docs/blind.csv");
+  auto* date = app.add_option("--date", options.date, "of the commit: git show -s --format=%cs");
+  record->needs(date);
+  CLI11_PARSE(app, count, values);
+  try {
+    return run(options);
+  } catch (const std::exception& error) {
+    std::cerr << "score_blind: " << error.what() << "\n";
+    return 1;
+  }
+}
