@@ -148,14 +148,64 @@ std::vector<Day> draw_days(const Spec& spec, const World& world, int count, Stre
   return days;
 }
 
+/// One sample: the condition that is run, and the one that its label says.
+struct Pull {
+  int sample, day;
+  int run, label;  ///< numbers of conditions
+};
+
+/// Labels of two conditions may be exchanged as a whole; one sample may have been run as another condition.
+std::vector<Pull> plan_pulls(const Schedule& schedule, const std::vector<int>& swap) {
+  std::vector<Pull> pulls;
+  for (const Run& run : schedule.runs) {
+    int label = run.condition;
+    if (!swap.empty() && label == swap[0]) {
+      label = swap[1];
+    } else if (!swap.empty() && label == swap[1]) {
+      label = swap[0];
+    }
+    for (int k = 0; k < samples_a_cell; ++k) {
+      pulls.push_back({static_cast<int>(pulls.size()) + 1, run.day, run.condition, label});
+    }
+  }
+  return pulls;
+}
+
+/// In one case of twenty one sample was run as another condition than its label says.
+/// @return its number, or 0
+int mistake_one(std::vector<Pull>& pulls, const Schedule& schedule, Stream& stream) {
+  const bool any = stream.uniform() < 0.05;
+  Pull& pull = pulls[static_cast<std::size_t>(stream.index(static_cast<int>(pulls.size())))];
+  const int run = 1 + stream.index(static_cast<int>(schedule.conditions.size()));
+  if (!any || run == pull.run) return 0;
+  pull.run = run;
+  return pull.sample;
+}
+
 bool swaps_labels(const Case& hidden) {
   return std::ranges::any_of(hidden.hidden, [](const Hidden& h) { return h.id == "mislabelled_condition"; });
+}
+
+/// The readings of one sample. A wrong label does not touch the clock and the load cell: they log what was
+/// run.
+void read(const World& world, const Pull& pull, const Schedule& schedule, const Bias& bias, const Day& day,
+          const std::vector<double>& slips, bool load_is_logged, Disturbance& noise, std::vector<Row>& rows) {
+  const Condition& set = schedule.conditions[static_cast<std::size_t>(pull.run - 1)];
+  const Condition& nominal = schedule.conditions[static_cast<std::size_t>(pull.label - 1)];
+  const std::vector<double> forces = blindgen::pull(world, true_condition(set, bias, day.bias), slips);
+  const std::vector<double> errors = noise.draw(slips.size());
+  for (std::size_t i = 0; i < slips.size(); ++i) {
+    const double measured = set.normal_force * (1.0 + force_cell_noise * noise.cell.normal());
+    rows.push_back({pull.label, pull.sample, pull.day, nominal, slips[i] / set.velocity, slips[i],
+                    forces[i] * day.gain * std::exp(errors[i]),
+                    load_is_logged ? std::optional(measured) : std::nullopt});
+  }
 }
 
 }  // namespace
 
 Campaign measure(const Spec& spec, const Case& hidden) {
-  const auto stream = [&](std::string what) {
+  const auto stream = [&](const std::string& what) {
     return Stream(
         spec.seed, static_cast<std::uint64_t>(spec.case_number),
         what + " of " + std::string(name_of(spec.kind)) + " on " + std::string(name_of(spec.design)));
@@ -168,40 +218,15 @@ Campaign measure(const Spec& spec, const Case& hidden) {
   campaign.days = schedule.days;
   campaign.missing_conditions = drop_cells(schedule, mistakes);
   if (swaps_labels(hidden)) campaign.swapped_conditions = choose_swap(hidden.world, schedule, mistakes);
-  const int samples = samples_a_cell * static_cast<int>(schedule.runs.size());
-  const bool one_is_wrong = mistakes.uniform() < 0.05;
-  const int wrong = 1 + mistakes.index(samples);
-  const int taken_for = 1 + mistakes.index(static_cast<int>(schedule.conditions.size()));
+  std::vector<Pull> pulls = plan_pulls(schedule, campaign.swapped_conditions);
+  campaign.mislabelled_sample = mistake_one(pulls, schedule, mistakes);
 
   const Bias bias = draw_bias(rig, force_bias, temperature_bias);
   const std::vector<Day> days = draw_days(spec, hidden.world, schedule.days, rig);
   Disturbance noise{stream("gain"), stream("points"), stream("cell"), spec.sample_scatter};
-  int sample = 0;
-  for (const Run& run : schedule.runs) {
-    int label = run.condition;
-    const std::vector<int>& swap = campaign.swapped_conditions;
-    if (!swap.empty() && label == swap[0])
-      label = swap[1];
-    else if (!swap.empty() && label == swap[1])
-      label = swap[0];
-    const Day& day = days[static_cast<std::size_t>(run.day - 1)];
-    for (int k = 0; k < samples_a_cell; ++k) {
-      ++sample;
-      const bool mistaken = one_is_wrong && sample == wrong && taken_for != run.condition;
-      if (mistaken) campaign.mislabelled_sample = sample;
-      const Condition& set =
-          schedule.conditions[static_cast<std::size_t>((mistaken ? taken_for : run.condition) - 1)];
-      // A wrong label does not touch the clock and the load cell: they log what was run.
-      const Condition& nominal = schedule.conditions[static_cast<std::size_t>(label - 1)];
-      const std::vector<double> forces = pull(hidden.world, true_condition(set, bias, day.bias), slips);
-      const std::vector<double> errors = noise.draw(slips.size());
-      for (std::size_t i = 0; i < slips.size(); ++i) {
-        const double measured = set.normal_force * (1.0 + force_cell_noise * noise.cell.normal());
-        campaign.rows.push_back({label, sample, run.day, nominal, slips[i] / set.velocity, slips[i],
-                                 forces[i] * day.gain * std::exp(errors[i]),
-                                 load_is_logged ? std::optional(measured) : std::nullopt});
-      }
-    }
+  for (const Pull& pull : pulls) {
+    const Day& day = days[static_cast<std::size_t>(pull.day - 1)];
+    read(hidden.world, pull, schedule, bias, day, slips, load_is_logged, noise, campaign.rows);
   }
   return campaign;
 }
