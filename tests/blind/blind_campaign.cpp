@@ -130,7 +130,11 @@ int main(int count, char** values) {
   CLI::App app("Runs a campaign of the blind test of heddle discover");
   Options options;
   describe(app, options);
-  CLI11_PARSE(app, count, values);
+  try {
+    app.parse(count, values);
+  } catch (const CLI::ParseError& error) {
+    return app.exit(error) == 0 ? 0 : 2;  // CLI11 has codes of its own
+  }
   try {
     return run(options);
   } catch (const std::invalid_argument& error) {

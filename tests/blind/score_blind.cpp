@@ -49,7 +49,11 @@ int main(int count, char** values) {
       app.add_option("--record", options.record, "appends a line a campaign, for instance to docs/blind.csv");
   auto* date = app.add_option("--date", options.date, "of the commit: git show -s --format=%cs");
   record->needs(date);
-  CLI11_PARSE(app, count, values);
+  try {
+    app.parse(count, values);
+  } catch (const CLI::ParseError& error) {
+    return app.exit(error) == 0 ? 0 : 2;  // CLI11 has codes of its own
+  }
   try {
     return run(options);
   } catch (const std::exception& error) {
