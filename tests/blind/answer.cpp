@@ -21,6 +21,21 @@ std::vector<Weighted> weighted_list(const json& list) {
   return items;
 }
 
+/// A proposed experiment; what it does not mention is as at the baseline.
+blindgen::Condition condition(const json& experiment) {
+  constexpr double zero_celsius = 273.15, degree = 3.14159265358979323846 / 180.0;
+  blindgen::Condition c = blindgen::baseline();
+  c.velocity = 1e-3 * experiment.value("velocity_mm_s", 1e3 * c.velocity);
+  c.normal_force = experiment.value("normal_force_N", c.normal_force);
+  c.tool_temperature =
+      zero_celsius + experiment.value("tool_temperature_C", c.tool_temperature - zero_celsius);
+  c.fabric_temperature =
+      zero_celsius + experiment.value("fabric_temperature_C", c.fabric_temperature - zero_celsius);
+  c.orientation = degree * experiment.value("orientation_deg", c.orientation / degree);
+  c.dwell = experiment.value("dwell_s", c.dwell);
+  return c;
+}
+
 /// Numbers that cannot be had are null or absent.
 std::optional<double> number(const json& object, const char* key) {
   const auto found = object.find(key);
@@ -41,6 +56,9 @@ Answer from_json(const json& report) {
   if (answer.gives_name() == answer.named.empty()) {
     throw std::runtime_error("verdict " + answer.verdict + " with " + std::to_string(answer.named.size()) +
                              " effects");
+  }
+  for (const json& experiment : report.value("next_experiments", json::array())) {
+    answer.next_experiments.push_back(condition(experiment));
   }
   if (const auto gap = report.find("gap"); gap != report.end() && gap->is_object()) {
     answer.held_out_before = number(*gap, "held_out_before");

@@ -5,6 +5,8 @@
 #include <string_view>
 #include <vector>
 
+#include "blindgen/design.h"
+
 namespace heddle::blind {
 
 struct Weighted {
@@ -17,9 +19,10 @@ struct Answer {
   std::string verdict;  ///< NO_GAP, NAMED, ONE_OF, NAMED_INCOMPLETE or UNKNOWN
   std::vector<Weighted> named = {};
   std::vector<std::string> candidates = {};
-  std::vector<Weighted> ranking = {};  ///< of single effects, best first
+  std::vector<Weighted> ranking = {};  ///< of effects, and of sets as "a+b", best first
   std::optional<double> held_out_before = {}, held_out_after = {}, shrink = {};
   bool saturated = false;  ///< no shrink is claimed
+  std::vector<blindgen::Condition> next_experiments = {};
 
   /// A name is given, alone or with a remainder.
   bool gives_name() const { return verdict == "NAMED" || verdict == "NAMED_INCOMPLETE"; }

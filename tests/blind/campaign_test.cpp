@@ -1,5 +1,6 @@
 #include <unistd.h>
 
+#include <algorithm>
 #include <catch2/catch.hpp>
 #include <cmath>
 #include <filesystem>
@@ -46,7 +47,9 @@ data.yaml" ] || exit 3
 [ "$seed" = 2 ] && kill -9 $$
 [ "$seed" = 3 ] && exec sleep 60
 mkdir "$out"
-echo '{"verdict": "NO_GAP", "effects": [], "candidate_set": [], "ranking": []}' > "$out/report.json"
+echo '{"verdict": "NO_GAP", "effects": [], "candidate_set": [], "ranking": [], "next_experiments":
+ [{"velocity_mm_s": 83.3}, {"tool_temperature_C": 140, "dwell_s": 2}, {"normal_force_N": 343}, {"dwell_s": 60}]}' \
+ > "$out/report.json"
 )sh";
 
 RunOptions options(const Folder& folder) {
@@ -94,6 +97,14 @@ TEST_CASE("campaigns have the cases that the protocol asks for, under numbers th
   CHECK(plan("development", {.limit = 10}).size() == 10);
   for (const PlannedCase& planned : plan("development", {.kinds = {rig}})) CHECK(planned.spec.kind == rig);
   CHECK_THROWS_AS(plan("final", {}), std::invalid_argument);
+
+  const auto proposals = plan("proposals", {});
+  CHECK(proposals.size() == 300);
+  for (const PlannedCase& planned : proposals) {
+    CHECK((planned.follow_up == FollowUp::none ? planned.first == 0 : planned.first < planned.number));
+    if (planned.follow_up == FollowUp::none) continue;
+    CHECK(proposals.at(static_cast<std::size_t>(planned.first - 1)).spec.effects == planned.spec.effects);
+  }
 }
 
 TEST_CASE("acceptance seeds are the first digits of the two trees", "[blind]") {
@@ -146,4 +157,21 @@ TEST_CASE("a campaign that was stopped goes on, and another one is refused its f
   CHECK(run_cases(store, cases, options(folder), never, silent).finished == 1);
   CHECK(judge(store).cases.size() == 1);
   CHECK_THROWS_WITH(store.open(manifest(2)), Catch::Contains("another campaign"));
+}
+
+TEST_CASE("a follow-up has the three cells that the first answer asks for", "[blind]") {
+  const Folder folder;
+  Manifest proposals = manifest(1);
+  proposals.campaign = "proposals";
+  const Store store(folder / "campaign");
+  store.open(proposals);
+  const auto cases = plan("proposals", proposals.selection);
+  REQUIRE(cases.size() == 3);
+  run_cases(store, cases, options(folder), never, silent);
+  const auto rows = [&](int number) { return store.finished(number).value().rows; };
+  const blindgen::Campaign first = measure(cases[0].spec, draw_case(cases[0].spec));
+  const int points = static_cast<int>(std::ranges::count(first.rows, 1, &blindgen::Row::sample));
+  CHECK(rows(1) == static_cast<int>(first.rows.size()));
+  CHECK(rows(2) == rows(1) + 4 * 5 * points);  // three cells and the baseline of that day, five samples each
+  CHECK(rows(3) == rows(2));
 }

@@ -288,6 +288,20 @@ TEST_CASE("a drifting gain moves the baseline from the first day to the last", "
   CHECK(std::abs(span) == Approx(hidden.hidden[0].size).epsilon(0.1));
 }
 
+TEST_CASE("cells of one more day leave what was measured before as it was", "[blind]") {
+  Spec spec{.seed = 3, .case_number = 1, .design = Design::oat22};
+  const std::string before = data_text(measure(spec, draw_case(spec)));
+  spec.extra = {cells_of(Design::crossed48).back().condition, baseline()};
+  const Campaign more = measure(spec, draw_case(spec));
+  const std::string after = data_text(more);
+  CHECK(after.substr(0, before.size()) == before);
+  std::set<int> samples;
+  for (const Row& row : more.rows) {
+    if (row.day == more.days) samples.insert(row.sample);
+  }
+  CHECK(samples.size() == 15);  // the baseline and two cells
+}
+
 TEST_CASE("asking for an effect of another kind is refused", "[blind]") {
   CHECK_THROWS_AS(draw_case({.kind = Kind::single, .effects = {"gain_drift"}}), std::invalid_argument);
   CHECK_THROWS_AS(draw_case({.kind = Kind::single, .effects = {"wear", "adhesion"}}), std::invalid_argument);

@@ -18,6 +18,7 @@ struct Scored {
 struct Setting {
   blindgen::Design design{};
   double sample_scatter = 0, day_scatter = 0, amplitude = 0;
+  FollowUp follow_up = FollowUp::none;
   auto operator<=>(const Setting&) const = default;
 };
 

@@ -79,6 +79,19 @@ std::vector<Spec> amplitudes(Spec common) {
   return specs;
 }
 
+/// Effects that the paper's design confuses (prototype of the method: area, adhesion and heating; film and
+/// shift), 20 of each.
+std::vector<Spec> proposals(Spec common) {
+  std::vector<Spec> specs;
+  common.design = Design::oat22;
+  for (const char* id : {"pressure_dependent_area", "adhesion", "shear_heating", "tool_temperature_film",
+                         "tool_temperature_shift"}) {
+    common.effects = {id};
+    add(specs, common, {{Kind::single, 20}});
+  }
+  return specs;
+}
+
 std::vector<Spec> smoke(Spec common) {
   std::vector<Spec> specs;
   add(specs, common,
@@ -103,8 +116,21 @@ const std::vector<Entry>& entries() {
       {{"designs", "150 singles and 60 nulls on each of the three other designs"}, designs},
       {{"cv10", "330 singles and 60 nulls at 10 % scatter from sample to sample"}, cv10},
       {{"amplitudes", "60 singles at 0.3, 0.5, 0.75, 1, 1.5 and 2 times the size"}, amplitudes},
+      {{"proposals",
+        "100 confusable singles on Table 2, then with three proposed and with three random cells"},
+       proposals},
       {{"smoke", "12 cases, a few of each kind"}, smoke}};
   return all;
+}
+
+/// Each case again with three proposed cells, and with three random ones.
+void add_follow_ups(std::vector<PlannedCase>& cases) {
+  const std::vector<PlannedCase> first = cases;
+  for (const FollowUp follow_up : {FollowUp::proposed, FollowUp::random}) {
+    for (const PlannedCase& planned : first) {
+      cases.push_back({static_cast<int>(cases.size()) + 1, planned.spec, follow_up, planned.number});
+    }
+  }
 }
 
 std::uint64_t first_digits(std::string_view tree) {
@@ -143,7 +169,34 @@ std::vector<PlannedCase> plan(std::string_view campaign, const Selection& select
   if (selection.limit > 0 && selection.limit < static_cast<int>(cases.size())) {
     cases.resize(static_cast<std::size_t>(selection.limit));
   }
+  if (campaign == "proposals") add_follow_ups(cases);
   return cases;
+}
+
+std::vector<blindgen::Condition> random_cells(const Spec& spec) {
+  std::vector<double> tools, forces, velocities;
+  for (const blindgen::Cell& cell : blindgen::cells_of(Design::oat22)) {
+    tools.push_back(cell.condition.tool_temperature);
+    forces.push_back(cell.condition.normal_force);
+    velocities.push_back(cell.condition.velocity);
+  }
+  blindgen::Stream stream(spec.seed, static_cast<std::uint64_t>(spec.case_number), "random cells");
+  const auto level = [&](std::vector<double> levels) {
+    std::ranges::sort(levels);
+    const auto repeated = std::ranges::unique(levels);
+    levels.erase(repeated.begin(), repeated.end());
+    return levels[static_cast<std::size_t>(stream.index(static_cast<int>(levels.size())))];
+  };
+  std::vector<blindgen::Condition> cells;
+  for (int i = 0; i < follow_up_cells; ++i) {
+    blindgen::Condition cell = blindgen::baseline();
+    cell.tool_temperature = level(tools);
+    cell.normal_force = level(forces);
+    cell.velocity = level(velocities);
+    cell.dwell = level({2.0, 10.0, 60.0});
+    cells.push_back(cell);
+  }
+  return cells;
 }
 
 std::uint64_t acceptance_seed(std::string_view discover_tree, std::string_view friction_tree) {

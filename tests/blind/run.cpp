@@ -6,6 +6,7 @@
 #include <stdexcept>
 #include <thread>
 
+#include "answer.h"
 #include "child.h"
 #include "core/sha256.h"
 #include "pipeline/outputs.h"
@@ -32,10 +33,22 @@ fs::path work_folder(const Store& store, int number) {
   return store.folder_of(number) / "work";
 }
 
+/// What the first answer asks for, as far as it asks for anything.
+std::vector<blindgen::Condition> proposed_cells(const Store& store, int first) {
+  const std::string report = store.report(first);
+  if (report.empty()) return {};
+  std::vector<blindgen::Condition> cells = read_answer(report).next_experiments;
+  if (cells.size() > follow_up_cells) cells.resize(follow_up_cells);
+  return cells;
+}
+
 Job start(const Store& store, const PlannedCase& planned, const RunOptions& options) {
   fs::remove_all(store.folder_of(planned.number));  // of a case that was broken off
   const fs::path folder = work_folder(store, planned.number);
-  const blindgen::Campaign data = measure(planned.spec, draw_case(planned.spec));
+  blindgen::Spec spec = planned.spec;
+  if (planned.follow_up == FollowUp::proposed) spec.extra = proposed_cells(store, planned.first);
+  if (planned.follow_up == FollowUp::random) spec.extra = random_cells(spec);
+  const blindgen::Campaign data = measure(spec, draw_case(spec));
   const std::string table = data_text(data);
   pipeline::write_file(folder / "data.csv", table);
   pipeline::write_file(folder / "data.yaml", blindgen::sidecar_text());
@@ -80,6 +93,11 @@ void store_answer(const Store& store, Job& job, const Ending& ending, const RunO
   if (report.empty()) ++summary.without_report;
 }
 
+/// A follow-up waits for the case it follows.
+bool can_start(const Store& store, const PlannedCase& planned) {
+  return planned.follow_up == FollowUp::none || store.finished(planned.first).has_value();
+}
+
 void need(const fs::path& file) {
   if (!fs::is_regular_file(file)) throw std::runtime_error("there is no file " + file.string());
 }
@@ -94,7 +112,8 @@ RunSummary run_cases(const Store& store, const std::vector<PlannedCase>& cases, 
   std::list<Job> jobs;
   std::size_t next = 0;
   while ((next < cases.size() || !jobs.empty()) && !(summary.stopped = stop())) {
-    if (next < cases.size() && static_cast<int>(jobs.size()) < options.processes) {
+    if (next < cases.size() && static_cast<int>(jobs.size()) < options.processes &&
+        can_start(store, cases[next])) {
       const PlannedCase& planned = cases[next++];
       if (store.finished(planned.number))
         ++summary.skipped;

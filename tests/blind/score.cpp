@@ -38,12 +38,19 @@ bool names_exactly(const Judged& judged) {
   return judged.answer && judged.answer->gives_name() && named_ids(judged) == truth_ids(judged);
 }
 
+/// The first of the ranking that is one effect and not a set; empty if there is none.
+std::string first_effect(const Answer& answer) {
+  const auto found = std::ranges::find_if(
+      answer.ranking, [](const Weighted& w) { return w.id.find('+') == std::string::npos; });
+  return found == answer.ranking.end() ? "" : found->id;
+}
+
 /// The effect that stands first: the name given, or the head of a ONE_OF.
 std::string first_name(const Judged& judged) {
   if (!judged.answer) return "";
   const Answer& answer = *judged.answer;
   if (answer.gives_name()) return answer.named.front().id;
-  return answer.verdict == "ONE_OF" && !answer.ranking.empty() ? answer.ranking.front().id : "";
+  return answer.verdict == "ONE_OF" ? first_effect(answer) : "";
 }
 
 bool is_top1(const Judged& judged) {
@@ -83,13 +90,13 @@ void count_single(Scores& s, const Judged& judged) {
   s.size_of[truth].push_back(judged.truth.front().size);
   s.named_alone.count(names_exactly(judged));
   const Answer* answer = judged.answer ? &*judged.answer : nullptr;
-  const bool first = answer && !answer->ranking.empty() && answer->ranking.front().id == truth;
-  s.first_ranked.count(first);
+  s.first_ranked.count(answer && first_effect(*answer) == truth);
   s.candidate_set.count(answer && contains(answer->candidates, truth));
   if (is_confident_single(judged)) s.precision.count(names_exactly(judged));
   if (!answer) return;
   s.set_sizes.push_back(static_cast<double>(answer->candidates.size()));
-  if (!answer->ranking.empty()) s.forecasts.push_back({answer->ranking.front().probability, first});
+  if (!answer->ranking.empty())
+    s.forecasts.push_back({answer->ranking.front().probability, answer->ranking.front().id == truth});
   if (!answer->gives_name() || answer->saturated) return;
   // A name without a proof on held-out conditions is one that did not improve.
   s.improved.count(answer->held_out_before && answer->held_out_after &&

@@ -28,7 +28,7 @@ struct Scores {
   // one effect
   Rate top1;                    ///< named alone and right, or first of a ONE_OF
   Rate named_alone;             ///< named alone and right
-  Rate first_ranked;            ///< first of the ranking, whatever the verdict
+  Rate first_ranked;            ///< first single effect of the ranking, whatever the verdict
   Rate candidate_set;           ///< set holds the truth
   Rate precision;               ///< right, of single names given with P >= 0.9
   Rate improved;                ///< held-out error smaller after, of unsaturated names
@@ -36,7 +36,7 @@ struct Scores {
   std::vector<double> set_sizes;
   std::map<std::string, Rate> top1_of;  ///< by effect
   std::map<std::string, std::vector<double>> size_of;
-  std::vector<Forecast> forecasts;  ///< of the first of the ranking
+  std::vector<Forecast> forecasts;  ///< of the first of the ranking, effect or set
   // nothing hidden
   Rate null_named, null_exact_named;  ///< a name or a set of names
   Rate null_gap;                      ///< any verdict but NO_GAP

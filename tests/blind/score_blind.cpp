@@ -1,4 +1,5 @@
 #include <CLI/CLI.hpp>
+#include <algorithm>
 #include <exception>
 #include <filesystem>
 #include <iostream>
@@ -17,6 +18,7 @@ struct Options {
   std::vector<fs::path> folders;
   fs::path page, record;
   std::string date;
+  bool need_reports = false;
 };
 
 /// Lines are only ever added.
@@ -33,7 +35,9 @@ int run(const Options& options) {
     if (!options.record.empty()) append(options.record, blind::record_line(campaign, options.date));
   }
   if (!options.page.empty()) pipeline::write_file(options.page, blind::page(campaigns));
-  return 0;
+  const bool complete = std::ranges::all_of(
+      campaigns, [](const blind::Scored& campaign) { return blind::score(campaign.cases).failed == 0; });
+  return options.need_reports && !complete ? 1 : 0;
 }
 
 }  // namespace
@@ -49,6 +53,7 @@ int main(int count, char** values) {
       app.add_option("--record", options.record, "appends a line a campaign, for instance to docs/blind.csv");
   auto* date = app.add_option("--date", options.date, "of the commit: git show -s --format=%cs");
   record->needs(date);
+  app.add_flag("--need-reports", options.need_reports, "fail if a case has no report that can be read");
   try {
     app.parse(count, values);
   } catch (const CLI::ParseError& error) {

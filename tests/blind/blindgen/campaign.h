@@ -24,6 +24,7 @@ struct Spec {
   double sample_scatter = 0.05;           ///< deviation of ln gain from sample to sample [-]
   double day_scatter = 0.02;              ///< the same from day to day [-]
   double amplitude = 1.0;                 ///< of what is hidden; 1 = 15 to 30 % of the force
+  std::vector<Condition> extra = {};      ///< run on a day after all others; what came before keeps its bytes
 };
 
 /// What is hidden, and the world it is hidden in.

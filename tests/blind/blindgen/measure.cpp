@@ -182,6 +182,19 @@ int mistake_one(std::vector<Pull>& pulls, const Schedule& schedule, Stream& stre
   return pull.sample;
 }
 
+/// The conditions of one more day, with the baseline again, numbered on.
+void add_day(const std::vector<Condition>& extra, Schedule& schedule, std::vector<Pull>& pulls) {
+  if (extra.empty()) return;
+  ++schedule.days;
+  std::vector<int> numbers{number_of(schedule, baseline())};
+  for (const Condition& condition : extra) numbers.push_back(number_of(schedule, condition));
+  for (const int number : numbers) {
+    for (int k = 0; k < samples_a_cell; ++k) {
+      pulls.push_back({static_cast<int>(pulls.size()) + 1, schedule.days, number, number});
+    }
+  }
+}
+
 bool swaps_labels(const Case& hidden) {
   return std::ranges::any_of(hidden.hidden, [](const Hidden& h) { return h.id == "mislabelled_condition"; });
 }
@@ -215,11 +228,12 @@ Campaign measure(const Spec& spec, const Case& hidden) {
   Schedule schedule = plan_days(spec.design, layout);
   const std::vector<double> slips = logged_slips(layout);
   const bool load_is_logged = layout.uniform() < 0.3 && hidden.world.relaxation.loss == 0.0;
-  campaign.days = schedule.days;
   campaign.missing_conditions = drop_cells(schedule, mistakes);
   if (swaps_labels(hidden)) campaign.swapped_conditions = choose_swap(hidden.world, schedule, mistakes);
   std::vector<Pull> pulls = plan_pulls(schedule, campaign.swapped_conditions);
   campaign.mislabelled_sample = mistake_one(pulls, schedule, mistakes);
+  add_day(spec.extra, schedule, pulls);
+  campaign.days = schedule.days;
 
   const Bias bias = draw_bias(rig, force_bias, temperature_bias);
   const std::vector<Day> days = draw_days(spec, hidden.world, schedule.days, rig);
