@@ -273,6 +273,35 @@ TEST_CASE("scatter from sample to sample and from day to day is what was asked f
   CHECK(std::sqrt(day_variance) == Approx(std::sqrt(0.0205 * 0.0205 + sample_variance / 5.0)).epsilon(0.25));
 }
 
+TEST_CASE("one case in twenty has a wrong label, one in ten lacks cells, three in ten log the load",
+          "[blind]") {
+  constexpr int cases = 300;
+  int wrong = 0, missing = 0, logged = 0;
+  for (int number = 0; number < cases; ++number) {
+    const Spec spec{.seed = 8, .case_number = number, .kind = Kind::null, .design = Design::oat22};
+    const Campaign campaign = measure(spec, draw_case(spec));
+    wrong += campaign.mislabelled_sample > 0;
+    missing += !campaign.missing_conditions.empty();
+    logged += campaign.rows.front().normal_force.has_value();
+  }
+  const auto near = [](int count, double share) {  // within four deviations of a binomial count
+    return std::abs(count - cases * share) < 4.0 * std::sqrt(cases * share * (1.0 - share));
+  };
+  CHECK(near(wrong, 0.05 * 21.0 / 22.0));  // once in 22 the condition drawn instead is the right one
+  CHECK(near(missing, 0.10));
+  CHECK(near(logged, 0.30));
+}
+
+TEST_CASE("relaxing plates leave the measured normal force empty", "[blind]") {
+  for (int number = 0; number < 12; ++number) {
+    const Spec spec{.case_number = number,
+                    .kind = Kind::rig,
+                    .design = Design::oat22,
+                    .effects = {"normal_force_relaxation"}};
+    CHECK_FALSE(measure(spec, draw_case(spec)).rows.front().normal_force.has_value());
+  }
+}
+
 TEST_CASE("a drifting gain moves the baseline from the first day to the last", "[blind]") {
   const Spec spec{.kind = Kind::rig, .effects = {"gain_drift"}, .sample_scatter = 0.0, .day_scatter = 0.0};
   const Case hidden = draw_case(spec);

@@ -18,12 +18,26 @@ Settings by_setting(const std::vector<Judged>& cases) {
   return settings;
 }
 
-std::string title(const Setting& s) {
-  const char* more = s.follow_up == FollowUp::proposed ? ", three proposed cells more"
-                     : s.follow_up == FollowUp::random ? ", three random cells more"
-                                                       : "";
-  return fmt::format("{}, {:g} % a sample, {:g} % a day, amplitude {:g}{}", blindgen::name_of(s.design),
-                     100.0 * s.sample_scatter, 100.0 * s.day_scatter, s.amplitude, more);
+/// The parts of a setting in words.
+std::vector<std::string> parts(const Setting& s) {
+  const char* more = s.follow_up == FollowUp::proposed ? "three proposed cells more"
+                     : s.follow_up == FollowUp::random ? "three random cells more"
+                                                       : "as planned";
+  return {std::string(blindgen::name_of(s.design)), fmt::format("{:g} % a sample", 100.0 * s.sample_scatter),
+          fmt::format("{:g} % a day", 100.0 * s.day_scatter), fmt::format("amplitude {:g}", s.amplitude),
+          more};
+}
+
+/// What tells a setting from the others, or all of it if there are no others.
+std::string title(const Setting& setting, const Settings& all) {
+  std::string text;
+  const std::vector<std::string> words = parts(setting);
+  for (std::size_t i = 0; i < words.size(); ++i) {
+    const bool differs =
+        std::ranges::any_of(all, [&](const auto& other) { return parts(other.first)[i] != words[i]; });
+    if (all.size() == 1 || differs) text += (text.empty() ? "" : ", ") + words[i];
+  }
+  return text;
 }
 
 /// "97.3 % (95.0 to 98.6; 321 of 330)"
@@ -168,8 +182,8 @@ std::string comparison(const Settings& settings) {
   for (const auto& [setting, cases] : settings) {
     const Scores s = score(cases);
     text +=
-        fmt::format("| {} | {} | {} | {} | {} | {} |\n", title(setting), cell(s.top1), cell(s.candidate_set),
-                    cell(s.precision), cell(s.null_named), percent(median(s.shrinks)));
+        fmt::format("| {} | {} | {} | {} | {} | {} |\n", title(setting, settings), cell(s.top1),
+                    cell(s.candidate_set), cell(s.precision), cell(s.null_named), percent(median(s.shrinks)));
   }
   return text;
 }
@@ -178,7 +192,7 @@ std::string effects_by_setting(const Settings& settings) {
   std::string head = "| effect hidden, top-1 |", rule = "|---|", body;
   std::map<std::string, std::string> rows;
   for (const auto& [setting, cases] : settings) {
-    head += " " + title(setting) + " |";
+    head += " " + title(setting, settings) + " |";
     rule += "---|";
     const Scores s = score(cases);
     for (const std::string& id : effect_order()) {
@@ -219,11 +233,13 @@ std::string chapter(const Scored& campaign) {
                   m.campaign, command(m), campaign.cases.size(), m.selection.seed, m.commit,
                   m.discover_tree.substr(0, 8), m.friction_tree.substr(0, 8));
   if (m.campaign == "proposals") text += gain_of_proposals(campaign.cases);
+  if (m.campaign == "amplitudes")
+    text += fmt::format("![Share named against amplitude]({})\n\n", amplitude_picture);
   if (settings.size() > 1) {
     text += comparison(settings) + "\n" + effects_by_setting(settings) + "\n";
   } else {
     const Scores s = score(campaign.cases);
-    text += title(settings.begin()->first) + ".\n\n" + must_hold(s) + "\n" + all_figures(s) + "\n" +
+    text += title(settings.begin()->first, settings) + ".\n\n" + must_hold(s) + "\n" + all_figures(s) + "\n" +
             per_effect(s) + "\n" + other_answers(s) + "\n" + calibration(s) + "\n";
   }
   return text + "Every case that went wrong:\n\n" + failures(campaign.cases) + "\n";

@@ -24,6 +24,9 @@ struct Setting {
 
 Setting setting_of(const PlannedCase& planned);
 
+/// Where the page looks for the picture of the amplitudes campaign, beside itself.
+constexpr const char* amplitude_picture = "pictures/blind-amplitudes.svg";
+
 /// docs/blind.md: every figure, every failure, and the commands that made them.
 std::string page(const std::vector<Scored>& campaigns);
 

@@ -4,6 +4,7 @@
 #include <filesystem>
 #include <iostream>
 
+#include "amplitude_chart.h"
 #include "judge.h"
 #include "pipeline/outputs.h"
 
@@ -27,6 +28,15 @@ void append(const fs::path& file, const std::string& line) {
   pipeline::write_file(file, before + line);
 }
 
+void write_page(const std::vector<blind::Scored>& campaigns, const fs::path& page) {
+  for (const blind::Scored& campaign : campaigns) {
+    if (campaign.manifest.campaign != "amplitudes") continue;
+    pipeline::write_file(page.parent_path() / blind::amplitude_picture,
+                         blind::amplitude_chart(campaign.cases));
+  }
+  pipeline::write_file(page, blind::page(campaigns));
+}
+
 int run(const Options& options) {
   std::vector<blind::Scored> campaigns;
   for (const fs::path& folder : options.folders) campaigns.push_back(blind::judge(blind::Store(folder)));
@@ -34,7 +44,7 @@ int run(const Options& options) {
     std::cout << blind::summary(campaign);
     if (!options.record.empty()) append(options.record, blind::record_line(campaign, options.date));
   }
-  if (!options.page.empty()) pipeline::write_file(options.page, blind::page(campaigns));
+  if (!options.page.empty()) write_page(campaigns, options.page);
   const bool complete = std::ranges::all_of(
       campaigns, [](const blind::Scored& campaign) { return blind::score(campaign.cases).failed == 0; });
   return options.need_reports && !complete ? 1 : 0;
