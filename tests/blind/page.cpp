@@ -10,19 +10,11 @@ namespace heddle::blind {
 
 namespace {
 
-using Settings = std::map<Setting, std::vector<Judged>>;
-
-Settings by_setting(const std::vector<Judged>& cases) {
-  Settings settings;
-  for (const Judged& judged : cases) settings[setting_of(judged.planned)].push_back(judged);
-  return settings;
-}
-
 /// The parts of a setting in words.
 std::vector<std::string> parts(const Setting& s) {
   const char* more = s.follow_up == FollowUp::proposed ? "three proposed cells more"
                      : s.follow_up == FollowUp::random ? "three random cells more"
-                                                       : "as planned";
+                                                       : "no cells more";
   return {std::string(blindgen::name_of(s.design)), fmt::format("{:g} % a sample", 100.0 * s.sample_scatter),
           fmt::format("{:g} % a day", 100.0 * s.day_scatter), fmt::format("amplitude {:g}", s.amplitude),
           more};
@@ -35,7 +27,7 @@ std::string title(const Setting& setting, const Settings& all) {
   for (std::size_t i = 0; i < words.size(); ++i) {
     const bool differs =
         std::ranges::any_of(all, [&](const auto& other) { return parts(other.first)[i] != words[i]; });
-    if (all.size() == 1 || differs) text += (text.empty() ? "" : ", ") + words[i];
+    if (differs || (all.size() == 1 && i + 1 < words.size())) text += (text.empty() ? "" : ", ") + words[i];
   }
   return text;
 }
@@ -275,42 +267,22 @@ Setting setting_of(const PlannedCase& planned) {
   return {spec.design, spec.sample_scatter, spec.day_scatter, spec.amplitude, planned.follow_up};
 }
 
-std::string page(const std::vector<Scored>& campaigns) {
+Settings by_setting(const std::vector<Judged>& cases) {
+  Settings settings;
+  for (const Judged& judged : cases) settings[setting_of(judged.planned)].push_back(judged);
+  return settings;
+}
+
+std::string page(const std::vector<Scored>& campaigns, const std::vector<std::string>& others) {
   std::string text = preface;
   for (const Scored& campaign : campaigns) text += chapter(campaign);
-  return text;
+  if (!others.empty()) text += "## Other campaigns\n\nEach as it was last run:\n";
+  for (const std::string& other : others) text += fmt::format(" [{}]({}.md)", other, other);
+  return others.empty() ? text : text + "\n";
 }
 
 std::string summary(const Scored& campaign) {
   return chapter(campaign);
-}
-
-std::string record_header() {
-  return "date,commit,campaign,seed,discover_tree,friction_tree,cases,without_report,top1,top1_low,top1_of,"
-         "precision,"
-         "precision_of,candidate_set,null_named,null_named_high,null_of,null_exact_named,null_exact_of,pair_"
-         "exact,pair_of,"
-         "outside_clean,outside_of,rig_physics,rig_of,shrink_median,improved,calibration_error,wall_median_s,"
-         "wall_max_s,"
-         "passes\n";
-}
-
-std::string record_line(const Scored& campaign, const std::string& date) {
-  const Manifest& m = campaign.manifest;
-  const Scores s = score(campaign.cases);
-  std::string passes;  // one letter a requirement, in order: y, n, or - without a case
-  for (const Requirement& r : requirements(s)) passes += !r.holds ? '-' : *r.holds ? 'y' : 'n';
-  return fmt::format("{},{},{},{},{},{},{},{},", date, m.commit, m.campaign, m.selection.seed,
-                     m.discover_tree.substr(0, 8), m.friction_tree.substr(0, 8), s.cases, s.failed) +
-         fmt::format("{:.4f},{:.4f},{},{:.4f},{},{:.4f},", s.top1.value(), wilson(s.top1).low, s.top1.of,
-                     s.precision.value(), s.precision.of, s.candidate_set.value()) +
-         fmt::format("{:.4f},{:.4f},{},{:.4f},{},", s.null_named.value(), wilson(s.null_named).high,
-                     s.null_named.of, s.null_exact_named.value(), s.null_exact_named.of) +
-         fmt::format("{:.4f},{},{:.4f},{},{:.4f},{},", s.pair_exact.value(), s.pair_exact.of,
-                     s.outside_clean.value(), s.outside_clean.of, s.rig_physics.value(), s.rig_physics.of) +
-         fmt::format("{:.4f},{:.4f},{:.4f},{:.2f},{:.2f},{}\n", median(s.shrinks).value_or(std::nan("")),
-                     s.improved.value(), calibration_error(s.forecasts), median(s.wall_times).value_or(0.0),
-                     largest(s.wall_times), passes);
 }
 
 }  // namespace heddle::blind

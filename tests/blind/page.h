@@ -1,5 +1,6 @@
 #pragma once
 
+#include <map>
 #include <string>
 #include <vector>
 
@@ -24,17 +25,17 @@ struct Setting {
 
 Setting setting_of(const PlannedCase& planned);
 
+using Settings = std::map<Setting, std::vector<Judged>>;
+Settings by_setting(const std::vector<Judged>& cases);
+
 /// Where the page looks for the picture of the amplitudes campaign, beside itself.
 constexpr const char* amplitude_picture = "pictures/blind-amplitudes.svg";
 
 /// docs/blind.md: every figure, every failure, and the commands that made them.
-std::string page(const std::vector<Scored>& campaigns);
+/// @param others  pages of other campaigns beside this one, without .md, to link to
+std::string page(const std::vector<Scored>& campaigns, const std::vector<std::string>& others = {});
 
 /// The figures of one campaign for a terminal.
 std::string summary(const Scored& campaign);
-
-/// Columns of docs/blind.csv, and the line that a run appends.
-std::string record_header();
-std::string record_line(const Scored& campaign, const std::string& date);
 
 }  // namespace heddle::blind

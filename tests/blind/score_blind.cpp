@@ -5,6 +5,7 @@
 #include <iostream>
 
 #include "amplitude_chart.h"
+#include "history.h"
 #include "judge.h"
 #include "pipeline/outputs.h"
 
@@ -24,8 +25,22 @@ struct Options {
 
 /// Lines are only ever added.
 void append(const fs::path& file, const std::string& line) {
-  const std::string before = fs::exists(file) ? pipeline::read_file(file) : blind::record_header();
+  const std::string before = fs::exists(file) ? pipeline::read_file(file) : blind::history_header();
   pipeline::write_file(file, before + line);
+}
+
+/// Names of the pages blind-*.md in the folder of this one, without it.
+std::vector<std::string> pages_beside(const fs::path& page) {
+  std::vector<std::string> names;
+  const fs::path folder = page.has_parent_path() ? page.parent_path() : fs::path(".");
+  if (!fs::is_directory(folder)) return names;
+  for (const auto& entry : fs::directory_iterator(folder)) {
+    const std::string name = entry.path().stem().string();
+    const bool is_page = entry.path().extension() == ".md" && name.starts_with("blind-");
+    if (is_page && entry.path().filename() != page.filename()) names.push_back(name);
+  }
+  std::ranges::sort(names);
+  return names;
 }
 
 void write_page(const std::vector<blind::Scored>& campaigns, const fs::path& page) {
@@ -34,7 +49,7 @@ void write_page(const std::vector<blind::Scored>& campaigns, const fs::path& pag
     pipeline::write_file(page.parent_path() / blind::amplitude_picture,
                          blind::amplitude_chart(campaign.cases));
   }
-  pipeline::write_file(page, blind::page(campaigns));
+  pipeline::write_file(page, blind::page(campaigns, pages_beside(page)));
 }
 
 int run(const Options& options) {
@@ -42,7 +57,7 @@ int run(const Options& options) {
   for (const fs::path& folder : options.folders) campaigns.push_back(blind::judge(blind::Store(folder)));
   for (const blind::Scored& campaign : campaigns) {
     std::cout << blind::summary(campaign);
-    if (!options.record.empty()) append(options.record, blind::record_line(campaign, options.date));
+    if (!options.record.empty()) append(options.record, blind::history_lines(campaign, options.date));
   }
   if (!options.page.empty()) write_page(campaigns, options.page);
   const bool complete = std::ranges::all_of(

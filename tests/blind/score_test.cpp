@@ -1,9 +1,11 @@
 #include "score.h"
 
+#include <algorithm>
 #include <catch2/catch.hpp>
 #include <nlohmann/json.hpp>
 #include <stdexcept>
 
+#include "history.h"
 #include "page.h"
 
 using namespace heddle::blind;
@@ -164,6 +166,10 @@ TEST_CASE("the page of the blind test lists every case that went wrong", "[blind
     CHECK(text.find(row) != std::string::npos);
   }
   CHECK(text.find("| 1 | single") == std::string::npos);
-  const std::string header = record_header(), line = record_line(scored, "2026-01-01");
-  CHECK(std::count(header.begin(), header.end(), ',') == std::count(line.begin(), line.end(), ','));
+
+  const std::string header = history_header(), line = history_lines(scored, "2026-01-01");
+  CHECK(std::ranges::count(header, ',') == std::ranges::count(line, ','));
+  CHECK(std::ranges::count(line, '\n') == 1);
+  scored.cases[0].planned.spec.amplitude = 0.5;
+  CHECK(std::ranges::count(history_lines(scored, "2026-01-01"), '\n') == 2);
 }
