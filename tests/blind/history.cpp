@@ -67,6 +67,8 @@ void add_figures(Columns& columns, const Scores& s) {
   columns.emplace_back("wall_median_s", fmt::format("{:.2f}", median(s.wall_times).value_or(0.0)));
   columns.emplace_back("wall_max_s",
                        fmt::format("{:.2f}", s.wall_times.empty() ? 0.0 : std::ranges::max(s.wall_times)));
+  columns.emplace_back("cpu_max_s",
+                       fmt::format("{:.2f}", s.cpu_times.empty() ? 0.0 : std::ranges::max(s.cpu_times)));
   columns.emplace_back("passes", passes(s));
 }
 
