@@ -108,6 +108,7 @@ void count_null(Scores& s, const Judged& judged) {
   const bool named = !judged.answer || gives_any_name(*judged.answer);
   s.null_named.count(named);
   if (judged.planned.spec.kind == Kind::null_exact) s.null_exact_named.count(named);
+  s.null_name.count(!judged.answer || judged.answer->gives_name());
   s.null_gap.count(!judged.answer || judged.answer->verdict != "NO_GAP");
 }
 
@@ -124,6 +125,7 @@ void count_outside(Scores& s, const Judged& judged) {
   const std::string verdict = judged.answer ? judged.answer->verdict : "";
   s.outside_clean.count(!judged.answer || verdict == "NAMED");
   s.outside_unknown.count(verdict == "UNKNOWN" || verdict == "NAMED_INCOMPLETE");
+  s.outside_set.count(verdict == "ONE_OF");
   s.outside_unseen.count(verdict == "NO_GAP");
 }
 

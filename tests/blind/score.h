@@ -39,12 +39,14 @@ struct Scores {
   std::vector<Forecast> forecasts;  ///< of the first of the ranking, effect or set
   // nothing hidden
   Rate null_named, null_exact_named;  ///< a name or a set of names
+  Rate null_name;                     ///< a name, not a set
   Rate null_gap;                      ///< any verdict but NO_GAP
   // two effects
   Rate pair_exact, pair_one, pair_false;
   // not in the library
   Rate outside_clean;    ///< NAMED
   Rate outside_unknown;  ///< UNKNOWN, or a name with a remainder
+  Rate outside_set;      ///< ONE_OF
   Rate outside_unseen;   ///< NO_GAP
   // the rig's own faults
   Rate rig_physics;    ///< called an effect of friction

@@ -84,12 +84,14 @@ TEST_CASE("ten cases worked by hand have the figures of the scorer", "[blind]") 
   CHECK(calibration_error(s.forecasts) == Approx(0.38));
   check_rate(s.null_named, 1, 2);
   check_rate(s.null_exact_named, 1, 1);
+  check_rate(s.null_name, 0, 2);
   check_rate(s.null_gap, 1, 2);
   check_rate(s.pair_exact, 1, 1);
   check_rate(s.pair_one, 1, 1);
   check_rate(s.pair_false, 0, 1);
   check_rate(s.outside_clean, 0, 1);
   check_rate(s.outside_unknown, 1, 1);
+  check_rate(s.outside_set, 0, 1);
   check_rate(s.rig_physics, 1, 1);  // without a report it counts as wrong
   check_rate(s.rig_named, 0, 1);
   std::vector<int> wrong;
