@@ -1,6 +1,7 @@
 #include "pipeline/discover/coordinates.h"
 
 #include <cmath>
+#include <map>
 
 namespace heddle::discover {
 
@@ -44,17 +45,24 @@ double gaussian(double distance, double length) {
   return std::exp(-0.5 * x * x);
 }
 
-Eigen::MatrixXd likeness_of(const std::vector<CouponCell>& cells, double length) {
-  Eigen::Index size = 0;
-  for (const CouponCell& cell : cells) size += std::ssize(cell.points);
-  Eigen::MatrixXd likeness = Eigen::MatrixXd::Zero(size, size);
-  for (const Coordinate& c : coordinates_of(cells))
+std::vector<FormCoordinate> form_coordinates(const std::vector<CouponCell>& cells, double length) {
+  std::vector<FormCoordinate> coordinates;
+  for (const Coordinate& c : coordinates_of(cells)) {
+    FormCoordinate form;
+    std::map<long, int> levels;
+    for (const double at : c.at)
+      form.level.push_back(
+          levels.try_emplace(std::lround(50.0 * at), static_cast<int>(levels.size())).first->second);
+    const Eigen::Index size = c.at.size();
+    form.likeness.resize(size, size);
     for (Eigen::Index j = 0; j < size; ++j)
-      likeness.col(j).array() += ((c.at.array() - c.at[j]).square() * (-0.5 / (length * length))).exp();
-  // What is the same everywhere is the amplitude's own.
-  likeness.rowwise() -= likeness.colwise().mean().eval();
-  likeness.colwise() -= likeness.rowwise().mean().eval();
-  return likeness;
+      form.likeness.col(j) = ((c.at.array() - c.at[j]).square() * (-0.5 / (length * length))).exp();
+    // What is the same everywhere is the amplitude's own.
+    form.likeness.rowwise() -= form.likeness.colwise().mean().eval();
+    form.likeness.colwise() -= form.likeness.rowwise().mean().eval();
+    coordinates.push_back(std::move(form));
+  }
+  return coordinates;
 }
 
 }  // namespace heddle::discover

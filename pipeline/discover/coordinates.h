@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "pipeline/discover/coupon_campaign.h"
+#include "pipeline/discover/hypothesis.h"
 
 namespace heddle::discover {
 
@@ -25,9 +26,8 @@ std::vector<Coordinate> coordinates_of(const std::vector<CouponCell>& cells);
 /// exp(-(x/length)^2/2)
 double gaussian(double distance, double length);
 
-/// Covariance of an error of form between two observations, with unit variance over each coordinate: a sum of
-/// smooth functions of one coordinate each (Gaussian kernels). A product of kernels would let the error
-/// wander from cell to cell, which no law's form does. Its mean over the observations is taken out.
-Eigen::MatrixXd likeness_of(const std::vector<CouponCell>& cells, double length);
+/// Over each coordinate a smooth error of form (Gaussian kernel). One coordinate at a time: a product of
+/// kernels would let the error wander from cell to cell, which no law's form does.
+std::vector<FormCoordinate> form_coordinates(const std::vector<CouponCell>& cells, double length);
 
 }  // namespace heddle::discover

@@ -137,7 +137,7 @@ class CouponPredictor {
     if (rig.drift != 0.0 && days_ > 1)
       log_gain +=
           rig.drift * (2.0 * static_cast<double>(cells_[cell].day) / static_cast<double>(days_ - 1) - 1.0);
-    if (rig.backlash != 0.0 && cells_[cell].pull.velocity > rig_.own_speed)
+    if (rig.backlash != 0.0)
       log_gain += std::log1p(-rig.backlash * std::exp(-slip_of(point) / rig.backlash_length));
     return log_gain;
   }

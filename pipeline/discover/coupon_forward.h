@@ -19,7 +19,6 @@ struct CouponRig {
   friction::FrictionRig rig;
   friction::AreaFunction area;  ///< empty: nominal pressure
   int faces = 2;                ///< F = faces mu N
-  double own_speed = 8.3e-3;    ///< of the drive without its gear [m/s] (paper, section 2)
 };
 
 /// ln F of every point of the cells, in their order: the law with its effects, then what the rig does to it.

@@ -220,7 +220,7 @@ CouponFindings discover_in_coupons(const CouponQuestion& question, const frictio
   observations = observations_of(findings.training, findings.noise,
                                  hersey_numbers(fitted, question.rig, findings.training));
   observations.form = question.noise.effect_form;
-  observations.likeness = likeness_of(findings.training, question.noise.effect_form_length);
+  observations.coordinates = form_coordinates(findings.training, question.noise.effect_form_length);
   add_mislabelled(findings, question, first);
 
   findings.result = search(findings.forward, observations, question.search);

@@ -52,13 +52,20 @@ struct ForwardModel {
   std::function<Eigen::VectorXd(const Trial&)> predict;
 };
 
+/// One coordinate over which the form of an effect may be off.
+struct FormCoordinate {
+  std::vector<int> level;  ///< of each observation: those that share the coordinate share the level
+  Eigen::MatrixXd
+      likeness;  ///< covariance of the error at two observations, of unit variance, mean taken out
+};
+
 /// What was measured, in the order of ForwardModel::predict.
 struct Observations {
   Eigen::VectorXd value;       ///< ln of the observable
   Eigen::MatrixXd covariance;  ///< of value: noise, and what the model's form may be off
-  /// How alike the error of an effect's form is at two observations. Nature's form of an effect is not the
-  /// library's: what it does to ln F may be off by a share `form` of itself over each coordinate, smoothly.
-  Eigen::MatrixXd likeness = {};  ///< of size 0: forms are taken as exact
+  /// Nature's form of an effect is not the library's: what it does to ln F may be off by a share `form` of
+  /// itself over each coordinate that it depends on, smoothly. Empty: forms are taken as exact.
+  std::vector<FormCoordinate> coordinates = {};
   double form = 0.25;
 };
 

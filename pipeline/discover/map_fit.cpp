@@ -238,17 +238,50 @@ MapFit best_fit(const ForwardModel& model, const std::shared_ptr<const Whitened>
   return best;
 }
 
+namespace {
+
+/// How much of an effect's variation lies between the levels of a coordinate, 0 to 1.
+double share_between(const Eigen::VectorXd& effect, const std::vector<int>& level) {
+  const int count = *std::ranges::max_element(level) + 1;
+  Eigen::VectorXd sum = Eigen::VectorXd::Zero(count), number = Eigen::VectorXd::Zero(count);
+  for (std::size_t i = 0; i < level.size(); ++i) {
+    sum[level[i]] += effect[static_cast<Eigen::Index>(i)];
+    number[level[i]] += 1.0;
+  }
+  const double mean = effect.mean(), total = (effect.array() - mean).square().sum();
+  const double between = ((sum.array() / number.array() - mean).square() * number.array()).sum();
+  return total > 1e-12 ? between / total : 0.0;
+}
+
+/// Covariance of an effect's form over the coordinates that it depends on: an effect that does not see the
+/// tool temperature may not be wrong over it either. Designs are not balanced, so a tenth of the strongest
+/// dependence counts as none.
+Eigen::MatrixXd form_covariance(const Eigen::VectorXd& effect, const Observations& observations) {
+  constexpr double none = 0.1;
+  std::vector<double> share;
+  for (const FormCoordinate& c : observations.coordinates) share.push_back(share_between(effect, c.level));
+  const double strongest = *std::ranges::max_element(share);
+  Eigen::MatrixXd likeness = Eigen::MatrixXd::Zero(effect.size(), effect.size());
+  for (std::size_t k = 0; k < share.size(); ++k)
+    if (share[k] > none * strongest)
+      likeness += (share[k] / strongest - none) / (1.0 - none) * observations.coordinates[k].likeness;
+  const Eigen::VectorXd size = observations.form * effect;
+  return size.asDiagonal() * likeness * size.asDiagonal();
+}
+
+}  // namespace
+
 MapFit with_form_error(const ForwardModel& model, const Observations& observations, const MapFit& fit,
                        const FitOptions& options) {
-  if (observations.likeness.size() == 0 || observations.form == 0.0 || !std::isfinite(fit.log_evidence))
+  if (observations.coordinates.empty() || observations.form == 0.0 || !std::isfinite(fit.log_evidence))
     return fit;
   Eigen::MatrixXd covariance = observations.covariance;
   const Eigen::VectorXd whole = model.predict(fit.trial);
   for (std::size_t k = 0; k < fit.trial.effects.size(); ++k) {
     Trial without = fit.trial;
     without.effects.erase(without.effects.begin() + static_cast<std::ptrdiff_t>(k));
-    const Eigen::VectorXd share = observations.form * (whole - model.predict(without));
-    if (share.allFinite()) covariance += share.asDiagonal() * observations.likeness * share.asDiagonal();
+    const Eigen::VectorXd effect = whole - model.predict(without);
+    if (effect.allFinite()) covariance += form_covariance(effect, observations);
   }
   return map_fit(model, std::make_shared<const Whitened>(observations.value, covariance), fit.hypothesis,
                  fit.z, options);

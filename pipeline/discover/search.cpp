@@ -117,11 +117,14 @@ void give_probabilities(std::vector<Scored>& scored) {
   for (Scored& one : scored) one.probability /= sum;
 }
 
-bool earns_its_place(const SearchResult& result, const Scored& pair, double bayes_factor) {
+bool earns_its_place(const SearchResult& result, const Scored& pair, const SearchOptions& options) {
   if (!std::isfinite(pair.fit.log_evidence)) return false;
   for (const std::size_t member : pair.fit.hypothesis) {
     const Scored* alone = result.find({member});
-    if (alone != nullptr && pair.fit.log_evidence - alone->fit.log_evidence <= bayes_factor) return false;
+    if (alone == nullptr) continue;
+    const double of_first = alone->fit.log_evidence - result.log_evidence_none;
+    const double wanted = std::max(options.bayes_factor, options.second * of_first);
+    if (pair.fit.log_evidence - alone->fit.log_evidence <= wanted) return false;
   }
   return true;
 }
@@ -174,7 +177,7 @@ SearchResult search(const ForwardModel& model, const Observations& observations,
                    .log_prior = prior.of(pairs[k])};
     });
     for (Scored& pair : fitted)
-      if (earns_its_place(result, pair, options.bayes_factor)) result.scored.push_back(std::move(pair));
+      if (earns_its_place(result, pair, options)) result.scored.push_back(std::move(pair));
   }
   give_probabilities(result.scored);
   return result;

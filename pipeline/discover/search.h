@@ -16,8 +16,11 @@ struct SearchOptions {
   double one_effect = 0.4;    ///< shared evenly by all ids
   double two_effects = 0.1;   ///< shared evenly by all pairs
   double bayes_factor = 3.0;  ///< ln, that each effect more must gain
-  std::size_t pairs_of = 4;   ///< single effects whose pairs are tried, the best by evidence
-  std::size_t partners = 6;   ///< of each, the strongest by their score on what the first leaves over
+  /// And that the second must gain as share of what the first does: beside an effect that is plain, what its
+  /// form is off by looks like another.
+  double second = 0.005;
+  std::size_t pairs_of = 4;  ///< single effects whose pairs are tried, the best by evidence
+  std::size_t partners = 6;  ///< of each, the strongest by their score on what the first leaves over
 };
 
 /// One hypothesis that was fitted, with its probability among all that were.
@@ -50,6 +53,6 @@ SearchResult search(const ForwardModel& model, const Observations& observations,
 void give_probabilities(std::vector<Scored>& scored);
 
 /// Whether the second effect of every pair earned its place: against each of its members alone.
-bool earns_its_place(const SearchResult& result, const Scored& pair, double bayes_factor);
+bool earns_its_place(const SearchResult& result, const Scored& pair, const SearchOptions& options);
 
 }  // namespace heddle::discover
