@@ -35,12 +35,10 @@ double centre_between(const UnitCell& cell, bool first_above, bool second_above,
 }  // namespace
 
 FabricGeometry fabric_geometry(const WeaveSpec& weave, CellState state) {
-  ParsedWeave parsed = parse_weave(weave.pattern);
-  if (!parsed.fault.empty())
-    throw InputError({{"weave.pattern.unknown"_rule, "weave.pattern", weave.pattern, parsed.fault,
-                       "Write plain, twill 2/2 or satin 8/3."}});
+  if (Problems problems = check_pattern(weave.pattern); !problems.empty())
+    throw InputError(std::move(problems));
   FabricGeometry fabric;
-  fabric.weave = std::move(parsed.weave);
+  fabric.weave = parse_weave(weave.pattern).weave;
   fabric.quarters = quarter_shares(fabric.weave);
   fabric.interlacing = interlacing(fabric.weave);
   fabric.as_woven_crimp = as_woven_crimp(weave, 0.5 * (fabric.interlacing[0] + fabric.interlacing[1]));

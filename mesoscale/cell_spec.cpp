@@ -194,10 +194,7 @@ void check_packing(Problems& problems, const CellSpec& spec) {
 }  // namespace
 
 Problems check(const CellSpec& spec) {
-  Problems problems;
-  if (const std::string fault = parse_weave(spec.weave.pattern).fault; !fault.empty())
-    problems.push_back({"weave.pattern.unknown"_rule, "weave.pattern", spec.weave.pattern, fault,
-                        "Write plain, twill 2/2 or satin 8/3."});
+  Problems problems = check_pattern(spec.weave.pattern);
   const std::size_t before = problems.size();
   check_weave_ranges(problems, spec.weave);
   if (problems.size() == before) {

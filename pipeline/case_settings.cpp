@@ -38,6 +38,8 @@ std::vector<std::array<double, columns>> rows(const Settings& settings, const st
 mesoscale::WeaveSpec weave_of(const Settings& settings, const std::string& block) {
   mesoscale::WeaveSpec weave;
   take(settings, block + ".pattern", weave.pattern);
+  if (weave.pattern == "matrix" && settings.has(block + ".matrix"))
+    weave.pattern += " " + settings.text(block + ".matrix");
   take(settings, block + ".tow_width", weave.tow_width);
   take(settings, block + ".gap", weave.gap);
   take(settings, block + ".tow_thickness", weave.tow_thickness);

@@ -42,7 +42,10 @@ std::vector<Key> weave_keys() {
   const auto cell = Stage::cell;
   return {
       {.path = "weave.pattern", .type = KeyType::text, .presence = required, .stage = cell,
-       .help = "plain, twill m/n or satin N/k."},
+       .help = "plain, twill m/n, twill m/n step s, satin N/k, crowfoot, or matrix for any other."},
+      {.path = "weave.matrix", .type = KeyType::bits, .presence = required, .stage = cell,
+       .used_when = "weave.pattern=matrix",
+       .help = "One repeat, a row a warp and an entry a weft: 1 where the warp is over."},
       {.path = "weave.tow_width", .type = KeyType::quantity, .unit = "mm", .presence = required,
        .range = "(0 mm, 100 mm)", .stage = cell, .help = "Width of a tow (paper, Table 1: 4.64 mm)."},
       {.path = "weave.gap", .type = KeyType::quantity, .unit = "mm", .presence = required, .range = "[0 mm, 100 mm)",
@@ -93,9 +96,11 @@ std::vector<Key> calibration_weave_keys() {
     for (const auto& [name, value] : table1)
       if (key.path == "weave." + name) key.default_text = value;
     key.path = "friction.calibration." + key.path;
-    key.presence = defaulted;
+    const std::string when = "friction.law=stribeck friction.contact_pressure=real";
+    if (key.used_when.empty()) key.presence = defaulted;
     key.stage = Stage::friction;
-    key.used_when = "friction.law=stribeck friction.contact_pressure=real";
+    // What another key of the weave asks for, the same key of this weave asks for here.
+    key.used_when = key.used_when.empty() ? when : when + " friction.calibration." + key.used_when;
     key.help = "Of the fabric that was pulled. " + key.help;
     keys.push_back(std::move(key));
   }
