@@ -220,6 +220,24 @@ WeaveMatrix smallest_repeat(const WeaveMatrix& weave) {
   return small;
 }
 
+bool alike_both_ways(const WeaveMatrix& weave) {
+  if (weave.warps != weave.wefts) return false;
+  const int n = weave.warps;
+  const auto same_from = [&](int shift_i, int shift_j, int hand, bool flipped) {
+    for (int i = 0; i < n; ++i)
+      for (int j = 0; j < n; ++j)
+        if (weave.warp_over(i, j) != (weave.warp_over(hand * j + shift_i, i + shift_j) != flipped))
+          return false;
+    return true;
+  };
+  for (int i = 0; i < n; ++i)
+    for (int j = 0; j < n; ++j)
+      for (const int hand : {1, -1})
+        for (const bool flipped : {true, false})
+          if (same_from(i, j, hand, flipped)) return true;
+  return false;
+}
+
 std::array<double, 2> interlacing(const WeaveMatrix& weave) {
   int warp_changes = 0, weft_changes = 0;
   for (int i = 0; i < weave.warps; ++i)
@@ -241,10 +259,19 @@ QuarterShares quarter_shares(const WeaveMatrix& weave) {
           const bool over = weave.warp_over(i, j);
           const bool warp_floats = over == weave.warp_over(i, j + step_weft);
           const bool weft_floats = over == weave.warp_over(i + step_warp, j);
-          const bool upper = over ? warp_floats : weft_floats;
-          const bool lower = over ? weft_floats : warp_floats;
-          shares[upper][lower] += quarter;
+          if (over)
+            shares[0][warp_floats][weft_floats] += quarter;
+          else
+            shares[1][weft_floats][warp_floats] += quarter;
         }
+  return shares;
+}
+
+FloatShares float_shares(const QuarterShares& quarters) {
+  FloatShares shares{};
+  for (std::size_t warp = 0; warp < 2; ++warp)
+    for (std::size_t weft = 0; weft < 2; ++weft)
+      shares[warp][weft] = quarters[0][warp][weft] + quarters[1][weft][warp];
   return shares;
 }
 

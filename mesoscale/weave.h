@@ -49,13 +49,23 @@ std::string fault_of_weave(const WeaveMatrix& weave);
 /// The smallest repeat of the same weave along its own axes.
 WeaveMatrix smallest_repeat(const WeaveMatrix& weave);
 
+/// Whether warp and weft can be exchanged: the weave seen from its other diagonal, perhaps from below or in a
+/// mirror, is the same up to where the repeat starts.
+bool alike_both_ways(const WeaveMatrix& weave);
+
 /// Share of the steps between neighbouring crossings at which a tow changes sides, {warp, weft} [-];
 /// plain: 1.
 std::array<double, 2> interlacing(const WeaveMatrix& weave);
 
-/// Share of the quarter crossings whose {upper, lower} tow floats (keeps its side) towards the next crossing:
-/// weight[upper floats][lower floats]; the four add to 1.
-using QuarterShares = std::array<std::array<double, 2>, 2>;
+/// Share of the quarter crossings by which family is on top (0 = warp, 1 = weft) and whether the {upper,
+/// lower} tow floats (keeps its side) towards the next crossing: share[top][upper floats][lower floats]; all
+/// add to 1.
+using QuarterShares = std::array<std::array<std::array<double, 2>, 2>, 2>;
 QuarterShares quarter_shares(const WeaveMatrix& weave);
+
+/// The same whichever is on top: share[warp floats][weft floats].
+using FloatShares = std::array<std::array<double, 2>, 2>;
+inline constexpr FloatShares no_floats{{{1.0, 0.0}, {0.0, 0.0}}};
+FloatShares float_shares(const QuarterShares& quarters);
 
 }  // namespace heddle::mesoscale

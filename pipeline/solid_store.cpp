@@ -55,10 +55,13 @@ std::string bytes_of(const solid::SolidResult& result, const std::string& key) {
   file.write("/thickness", result.thickness);
   file.write("/tow_share", result.tow_share);
   file.write("/different_voxels", static_cast<double>(result.different_voxels));
+  file.write("/balanced", result.balanced ? 1 : 0);
   if (result.tow) {
-    const solid::TransverseIsotropy& t = *result.tow;
-    file.write("/tow", std::vector<double>{t.axial_modulus, t.transverse_modulus, t.axial_shear,
-                                           t.transverse_shear, t.axial_poisson});
+    std::vector<double> constants;
+    for (const solid::TransverseIsotropy& t : *result.tow)
+      constants.insert(constants.end(), {t.axial_modulus, t.transverse_modulus, t.axial_shear,
+                                         t.transverse_shear, t.axial_poisson});
+    file.write("/tow", constants);
   }
   if (result.plate) {
     write_solution(file, "/plate", *result.plate);
@@ -82,11 +85,13 @@ solid::SolidResult read_solid_result(const Hdf5Reader& file) {
   std::copy(voxels.begin(), voxels.end(), result.voxels.begin());
   result.thickness = file.number("/thickness");
   result.tow_share = file.number("/tow_share");
+  result.balanced = file.integer("/balanced") != 0;
   result.different_voxels = static_cast<std::size_t>(file.number("/different_voxels"));
   if (file.has("/tow")) {
     const std::vector<double> t = file.doubles("/tow");
-    if (t.size() != 5) throw Hdf5Error("/tow has another size");
-    result.tow = solid::TransverseIsotropy{t[0], t[1], t[2], t[3], t[4]};
+    if (t.size() != 10) throw Hdf5Error("/tow has another size");
+    result.tow = {solid::TransverseIsotropy{t[0], t[1], t[2], t[3], t[4]},
+                  solid::TransverseIsotropy{t[5], t[6], t[7], t[8], t[9]}};
   }
   if (file.has("/plate")) {
     solid::PlateStiffness& plate = result.plate.emplace();

@@ -25,6 +25,7 @@ double BalancePair::gap() const {
 
 std::vector<BalancePair> balance_of(const SolidResult& result) {
   std::vector<BalancePair> pairs;
+  if (!result.balanced) return pairs;
   if (result.stack) {
     const Matrix6& c = result.stack->stiffness;
     pairs.push_back({"C11", "C22", c(0, 0), c(1, 1), "MPa", 1e-6});
@@ -71,13 +72,19 @@ SolidResult analyse(const WeaveSpec& weave, const SolidSpec& spec) {
   const FabricGeometry fabric = fabric_geometry(weave, CellState::consolidated);
   const VoxelCell cell = sample(unit_cell(fabric, 0.0), fabric.thickness, spec.grid);
   SolidResult result;
-  result.tow = tow(spec.tow_model, {weave.fibre_modulus, spec.fibre_poisson}, spec.resin,
-                   fabric.crossing.fibre_fraction);
-  const std::array phases{stiffness(spec.resin), stiffness(*result.tow)};
+  const auto tow_of = [&](const TowGeometry& geometry) {
+    return tow(spec.tow_model, {weave.fibre_modulus, spec.fibre_poisson}, spec.resin,
+               geometry.fibre_fraction);
+  };
+  const std::array tows{tow_of(fabric.crossing.tow[0]), tow_of(fabric.crossing.tow[1])};
+  result.tow = tows;
+  result.balanced = fabric.crossing.balanced() && alike_both_ways(fabric.weave);
+  const std::array phases{stiffness(spec.resin), stiffness(tows[0]), stiffness(tows[1])};
   const std::vector<Matrix6> c = content_stiffness(cell, phases);
   result.voxels = cell.count;
   result.thickness = fabric.thickness;
-  result.tow_share = phase_shares(cell, phases.size())[tow_phase];
+  const std::vector<double> shares = phase_shares(cell, phases.size());
+  result.tow_share = shares[warp_phase] + shares[weft_phase];
   result.different_voxels = cell.contents.size();
   result.plate = plate_stiffness(elastic_cell(cell, c), spec.solver);
   result.stack = periodic_stiffness(elastic_cell(cell, c), spec.solver);

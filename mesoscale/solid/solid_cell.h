@@ -37,13 +37,15 @@ struct SolidResult {
   double thickness = 0.0;                  ///< of the cell [m]
   std::optional<PlateStiffness> plate;     ///< of one ply with free faces; absent for a periodic voxel file
   std::optional<PeriodicStiffness> stack;  ///< of plies on one another without end; absent for a voxel plate
-  std::optional<TransverseIsotropy> tow;   ///< of a weave: what its tows are made of
-  double tow_share = 0.0;                  ///< of a weave: volume of the tows [-]
+  /// Of a weave: what its tows are made of, {warp, weft}
+  std::optional<std::array<TransverseIsotropy, 2>> tow;
+  double tow_share = 0.0;  ///< of a weave: volume of the tows [-]
   std::size_t different_voxels = 0;
-  std::vector<BalancePair> balance;  ///< all that were compared
+  bool balanced = true;              ///< warp and weft can be exchanged, as far as is known
+  std::vector<BalancePair> balance;  ///< all that were compared: none if they cannot
 };
 
-/// What a balanced weave has twice.
+/// What a balanced weave has twice; nothing of one that is not.
 std::vector<BalancePair> balance_of(const SolidResult& result);
 
 /// Those that differ by more than 0.1 %: from an unbalanced weave, or from axes in the wrong order.

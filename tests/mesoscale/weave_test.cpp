@@ -109,8 +109,25 @@ TEST_CASE("tows change sides at every step of a plain weave, and twice a repeat 
 
 TEST_CASE("quarter crossings add to one, and none floats in a plain weave", "[weave]") {
   for (const WeaveMatrix& weave : {plain_weave(), twill_weave(2, 2), satin_weave(8, 3)}) {
-    const QuarterShares q = quarter_shares(weave);
+    const FloatShares q = float_shares(quarter_shares(weave));
     CHECK(q[0][0] + q[0][1] + q[1][0] + q[1][1] == Approx(1.0).epsilon(1e-14));
   }
-  CHECK(quarter_shares(plain_weave())[0][0] == 1.0);
+  CHECK(float_shares(quarter_shares(plain_weave())) == no_floats);
+}
+
+TEST_CASE("the tow on top of a satin that shows its wefts is a warp at one crossing in eight", "[weave]") {
+  const QuarterShares q = quarter_shares(satin_weave(8, 3));
+  double warp_on_top = 0.0;
+  for (const auto& row : q[0])
+    for (const double share : row) warp_on_top += share;
+  CHECK(warp_on_top == Approx(1.0 / 8.0));
+  // Where the warp is on top, it dives on both sides, and so does the weft.
+  CHECK(q[0][0][0] == Approx(1.0 / 8.0));
+}
+
+TEST_CASE("warp and weft can be exchanged in plain, twill, satin and crowfoot, but not in a rib", "[weave]") {
+  for (const char* text :
+       {"plain", "twill 2/2", "twill 3/1", "twill 2/1", "satin 5/2", "satin 8/3", "crowfoot"})
+    CHECK(alike_both_ways(parse_weave(text).weave));
+  CHECK_FALSE(alike_both_ways(parse_weave("twill 2/2 step 2").weave));
 }
