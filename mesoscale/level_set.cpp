@@ -388,7 +388,15 @@ TowBodies tow_bodies(const UnitCell& cell) {
   const double thinnest =
       2.0 * std::min(half_height(cell.tow[0].section, 0.0), half_height(cell.tow[1].section, 0.0));
   const LevelSetCheck check = level_set_check(cell, thinnest / 7.5);
-  TowBodies bodies{check.voxel, 0.0, check.overlap_share, check.largest_depth};
+  const Penetration heights = penetration(cell, 64);
+  // Heights of 1e-3 m are rounded to 1e-19 m: below 1e-15 m tows touch and no more.
+  const bool touch = std::abs(heights.depth) < 1e-15;
+  TowBodies bodies{check.voxel,
+                   0.0,
+                   check.overlap_share,
+                   check.largest_depth,
+                   touch ? 0.0 : heights.depth,
+                   touch ? 0.0 : heights.volume};
   for (std::size_t k = 0; k < check.tows.size(); ++k)
     bodies.volume_error =
         std::max(bodies.volume_error, std::abs(check.tow_volume[k] / check.closed_form_volume[k] - 1.0));

@@ -189,6 +189,7 @@ ReportInput report_input(const Case& a_case, const Findings& findings) {
     input.fabric = findings.cell->fabric;
     input.height = report_height(findings.pictures->height);
     input.section = report_section(findings.pictures->section);
+    input.tow_bodies = findings.pictures->bodies;
   }
   input.solid = findings.solid;
   if (findings.friction) {
@@ -265,6 +266,8 @@ void print_cell(const mesoscale::CellSummary& s, const mesoscale::TowBodies& bod
              degrees * s.locking_angle);
   fmt::print("contact fraction     {:.2f} % of one face at 0.05 mm\n", 100.0 * s.contact_area_fraction);
   fmt::print("tow fibre fraction   {:.3f}\n", s.tow_fibre_volume_fraction);
+  fmt::print("overlap of tows      {:.3g} mm deep, {:.3g} mm^3 a repeat\n",
+             1e3 * std::max(bodies.height_depth, 0.0), 1e9 * bodies.height_volume);
   fmt::print(
       "tows as bodies       {:.2g} % off the closed volume, {:.2g} % of it in two tows ({:.3g} mm voxels)\n",
       100.0 * bodies.volume_error, 100.0 * bodies.overlap_share, 1e3 * bodies.voxel);

@@ -9,6 +9,7 @@
 #include "mesoscale/cell_spec.h"
 #include "mesoscale/contact.h"
 #include "mesoscale/forming.h"
+#include "random_weave.h"
 #include "table1.h"
 #include "tests/derivative_check.h"
 
@@ -16,48 +17,10 @@ using namespace heddle;
 using namespace heddle::mesoscale;
 using heddle::test::derivative_gap;
 using heddle::test::radians;
+using heddle::test::random_weave;
+using heddle::test::uniform;
 
 namespace {
-
-double uniform(std::mt19937& random, double low, double high) {
-  return low + (high - low) * static_cast<double>(random()) / 4294967296.0;
-}
-
-int whole(std::mt19937& random, int low, int high) {
-  return low + static_cast<int>(random() % static_cast<unsigned>(high - low + 1));
-}
-
-// A matrix of up to 6 x 6 that holds together.
-std::string random_matrix(std::mt19937& random) {
-  for (;;) {
-    const int warps = whole(random, 2, 6), wefts = whole(random, 2, 6);
-    std::string text = "matrix ";
-    for (int i = 0; i < warps; ++i) {
-      if (i > 0) text += '/';
-      for (int j = 0; j < wefts; ++j) text += random() % 2 == 0 ? '0' : '1';
-    }
-    if (parse_weave(text).fault.empty()) return text;
-  }
-}
-
-// Any weave of any tows that the rules let pass.
-WeaveSpec random_weave(std::mt19937& random) {
-  for (;;) {
-    CellSpec spec;
-    spec.weave.pattern = random_matrix(random);
-    double thickness = 0.0;
-    for (OwnTow& own : spec.weave.own) {
-      own.tow_width = uniform(random, 1e-3, 6e-3);
-      own.gap = uniform(random, 0.0, 0.8) * *own.tow_width;
-      own.tow_thickness = *own.tow_width / uniform(random, 3.0, 15.0);
-      // Fills a third to nine tenths of a lens.
-      own.linear_density = uniform(random, 0.2, 0.6) * *own.tow_width * *own.tow_thickness * 1480.0;
-      thickness += *own.tow_thickness;
-    }
-    spec.weave.fabric_thickness = thickness;
-    if (check(spec).empty()) return spec.weave;
-  }
-}
 
 CellSpec unbalanced() {
   CellSpec spec;
@@ -334,8 +297,8 @@ TEST_CASE("an unbalanced weave makes a fabric whose tables hold their rules", "[
   const CellResult result = analyse(unbalanced());
   CHECK(result.fabric.pitch[0] == Approx(3.7e-3));
   CHECK(result.fabric.pitch[1] == Approx(6.2e-3));
-  // The thin warp climbs over the thick weft: it has more crimp.
-  CHECK(result.summary.crimp[0] > 0.5 * result.summary.crimp[1]);
+  // Wefts rise less, but over warps that stand closer.
+  CHECK(result.summary.crimp[1] > result.summary.crimp[0]);
   CHECK(result.fabric.tension_energy.evaluate(0.02, 0.0).fx !=
         Approx(result.fabric.tension_energy.evaluate(0.0, 0.02).fy));
 }
