@@ -134,10 +134,30 @@ std::array<double, 2> UnitCell::place(double xi, double eta) const {
   return {xi + eta * std::sin(shear_angle), eta * std::cos(shear_angle)};
 }
 
+PressedFabric pressed(const FabricGeometry& consolidated, double shear_angle) {
+  const double swelling = 1.0 / std::cos(shear_angle);
+  std::array<double, 2> spacing{}, fibre_fraction{};
+  std::array<Section, 2> section{};
+  for (std::size_t i = 0; i < 2; ++i) {
+    const TowGeometry& tow = consolidated.crossing.tow[i];
+    spacing[i] = tow.spacing;
+    section[i] =
+        resized(tow.section, oblique_width(tow, shear_angle).width, thickness(tow.section) * swelling);
+    // The volume of a tow per pitch is its section in the parameter plane times p cos g.
+    fibre_fraction[i] = tow.fibre_fraction * area(tow.section) / area(section[i]) * swelling;
+  }
+  PressedFabric result{crossing_of(spacing, section, fibre_fraction), consolidated.thickness * swelling};
+  result.crossing.shear_angle = shear_angle;
+  return result;
+}
+
 UnitCell unit_cell(const FabricGeometry& fabric, double shear_angle) {
-  const CrossingGeometry crossing = sheared(fabric.crossing, shear_angle);
+  return unit_cell(fabric.weave, sheared(fabric.crossing, shear_angle));
+}
+
+UnitCell unit_cell(const WeaveMatrix& weave, const CrossingGeometry& crossing) {
   const auto shape = [](const TowGeometry& tow) { return UnitCell::Tow{tow.spacing, tow.section, tow.path}; };
-  return {fabric.weave, {shape(crossing.tow[0]), shape(crossing.tow[1])}, shear_angle};
+  return {weave, {shape(crossing.tow[0]), shape(crossing.tow[1])}, crossing.shear_angle};
 }
 
 double warp_centre(const UnitCell& cell, int warp, double along) {

@@ -100,7 +100,18 @@ struct UnitCell {
   std::array<double, 2> place(double xi, double eta) const;
 };
 
+UnitCell unit_cell(const WeaveMatrix& weave, const CrossingGeometry& crossing);
 UnitCell unit_cell(const FabricGeometry& fabric, double shear_angle);
+
+/// A fabric that was sheared and then consolidated, without voids: its area has shrunk by cos g, so it is
+/// thicker by 1 / cos g. Tows are as wide as sheared, fill the thickness as the unsheared ones do, and hold
+/// their glass.
+struct PressedFabric {
+  CrossingGeometry crossing;
+  double thickness;  ///< [m]
+};
+/// @param consolidated  at g = 0
+PressedFabric pressed(const FabricGeometry& consolidated, double shear_angle);
 
 /// Height of a tow's centreline above the mid-plane at distance `along` from the tow's first crossing [m].
 double warp_centre(const UnitCell& cell, int warp, double along);

@@ -94,6 +94,8 @@ void run_solid(const Case& a_case, RunFolder& folder, const Cache& cache, Findin
   findings.solid = cached<mesoscale::solid::SolidResult>(
       folder, cache, ChainStage::solid, a_case, read_solid_result, [&] { return run_solid_stage(a_case); });
   folder.write("mesoscale/stiffness.json", stiffness_json(*findings.solid));
+  if (!findings.solid->sheared.empty())
+    folder.write("mesoscale/stiffness_by_shear.csv", sheared_csv(findings.solid->sheared));
 }
 
 void run_friction(const Case& a_case, RunFolder& folder, const Cache& cache, Findings& findings) {
