@@ -293,7 +293,7 @@ TEST_CASE("every pattern makes a fabric whose tables hold their rules", "[weave]
     check_tables(pattern);
 }
 
-TEST_CASE("an unbalanced weave makes a fabric whose tables hold their rules", "[weave]") {
+TEST_CASE("an unbalanced weave makes a fabric whose tables hold their rules", "[weave][slow]") {
   const CellResult result = analyse(unbalanced());
   CHECK(result.fabric.pitch[0] == Approx(3.7e-3));
   CHECK(result.fabric.pitch[1] == Approx(6.2e-3));
