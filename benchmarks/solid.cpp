@@ -110,9 +110,11 @@ SampledCell sampled(int per_pitch, int layers, Mixing mixing) {
   result.cell = sample(unit_cell(fabric, 0.0), fabric.thickness, {per_pitch, layers, mixing});
   result.sampling = cpu_now() - start;
   const SolidSpec spec;
-  const std::array phases{stiffness(spec.resin),
-                          stiffness(chamis({weave.fibre_modulus, spec.fibre_poisson}, spec.resin,
-                                           fabric.crossing.fibre_fraction))};
+  const auto tow = [&](std::size_t i) {
+    return stiffness(
+        chamis({weave.fibre_modulus, spec.fibre_poisson}, spec.resin, fabric.crossing.tow[i].fibre_fraction));
+  };
+  const std::array phases{stiffness(spec.resin), tow(0), tow(1)};
   result.stiffness = content_stiffness(result.cell, phases);
   return result;
 }

@@ -1,3 +1,5 @@
+#include <algorithm>
+
 #include <fmt/format.h>
 
 #include "mesoscale/cell_spec.h"
@@ -26,15 +28,16 @@ CellSummary summarise(const FormingModels& models, const MassBalance& mass, cons
   CellSummary summary;
   summary.areal_density = mass.areal_density;
   for (std::size_t i = 0; i < 2; ++i) {
-    summary.crimp[i] = fabric.interlacing[i] * crossing.path.crimp();
-    summary.crimp_angle[i] = crossing.path.angle;
+    summary.crimp[i] = fabric.interlacing[i] * crossing.tow[i].path.crimp();
+    summary.crimp_angle[i] = crossing.tow[i].path.angle;
   }
   summary.gap_closure_angle = gap_closure_angle(crossing);
-  summary.tow_fibre_volume_fraction = crossing.fibre_fraction;
-  summary.tow_solid_volume_fraction = fabric.tow_solid_fraction;
+  summary.tow_fibre_volume_fraction =
+      std::max(crossing.tow[0].fibre_fraction, crossing.tow[1].fibre_fraction);
+  summary.tow_solid_volume_fraction = std::max(fabric.tow_solid_fraction[0], fabric.tow_solid_fraction[1]);
   summary.contact_area_fraction = plate_contact(fabric, law, 0.0).touched_fraction(0.05e-3);
-  summary.tow_section_area = crossing.section.area();
-  summary.consolidated_thickness = mass.consolidated_thickness;
+  summary.tow_section_area = area(crossing.tow[0].section);
+  summary.consolidated_thickness = mass.consolidated_thickness();
   return summary;
 }
 
@@ -50,7 +53,7 @@ CellResult analyse(const CellSpec& spec) {
   result.summary = summarise(models, fabric.mass, models.compaction);
   FabricProperties& out = result.fabric;
   out.areal_density = fabric.mass.areal_density;
-  out.pitch = {fabric.crossing.pitch, fabric.crossing.pitch};
+  out.pitch = {fabric.crossing.tow[0].spacing, fabric.crossing.tow[1].spacing};
   out.thickness = fabric.thickness;
   out.tension_energy = tabulate(models.tension);
   out.shear_stress = tabulate(models.shear, sine_grid(fabric));

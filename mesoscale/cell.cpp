@@ -8,10 +8,13 @@ namespace heddle::mesoscale {
 
 namespace {
 
-CrossingGeometry crossing_of(double pitch, double width, double thickness, double fibre_fraction) {
-  const LensSection section{width, thickness};
-  return {0.0, pitch, section, arc_path(pitch, thickness, section.radius() + 0.5 * thickness),
-          fibre_fraction};
+CrossingGeometry crossing_of(const std::array<double, 2>& spacing, const std::array<Section, 2>& section,
+                             const std::array<double, 2>& fibre_fraction) {
+  CrossingGeometry crossing;
+  for (std::size_t i = 0; i < 2; ++i)
+    crossing.tow[i] = {spacing[i], section[i], path_over(section[i], section[1 - i], spacing[1 - i]),
+                       fibre_fraction[i]};
+  return crossing;
 }
 
 struct Along {
@@ -25,44 +28,75 @@ Along locate(double along, double pitch) {
 }
 
 // Between two crossings a tow goes from its side at the first to its side at the second.
-double centre_between(const UnitCell& cell, bool first_above, bool second_above, double from) {
-  const double half = 0.5 * cell.crimp_height();
+double centre_between(const Path& path, bool first_above, bool second_above, double from) {
+  const double half = 0.5 * height(path);
   if (first_above == second_above) return first_above ? half : -half;
-  const double fallen = half - drop(cell.path, from);
+  const double fallen = half - drop(path, from);
   return first_above ? fallen : -fallen;
 }
 
 }  // namespace
 
 FabricGeometry fabric_geometry(const WeaveSpec& weave, CellState state) {
-  ParsedWeave parsed = parse_weave(weave.pattern);
-  if (!parsed.fault.empty())
-    throw InputError({{"weave.pattern.unknown"_rule, "weave.pattern", weave.pattern, parsed.fault,
-                       "Write plain, twill 2/2 or satin 8/3."}});
+  if (Problems problems = check_pattern(weave.pattern); !problems.empty())
+    throw InputError(std::move(problems));
   FabricGeometry fabric;
-  fabric.weave = std::move(parsed.weave);
+  fabric.weave = parse_weave(weave.pattern).weave;
   fabric.quarters = quarter_shares(fabric.weave);
   fabric.interlacing = interlacing(fabric.weave);
-  fabric.as_woven_crimp = as_woven_crimp(weave, 0.5 * (fabric.interlacing[0] + fabric.interlacing[1]));
+  fabric.as_woven_crimp = as_woven_crimp(weave, fabric.interlacing);
   fabric.mass = mass_balance(weave, fabric.as_woven_crimp);
 
   const bool woven = state == CellState::as_woven;
-  fabric.thickness = woven ? weave.fabric_thickness : fabric.mass.consolidated_thickness;
-  const double thickness = woven ? weave.tow_thickness : 0.5 * fabric.thickness;
-  const double section_area = LensSection{weave.tow_width, thickness}.area();
-  const double solid_area = fabric.mass.glass_area + fabric.mass.resin_area;
-  fabric.tow_solid_fraction = section_share(solid_area, fabric.as_woven_crimp, section_area);
-  fabric.crossing = crossing_of(weave.tow_width + weave.gap, weave.tow_width, thickness,
-                                section_share(fabric.mass.glass_area, fabric.as_woven_crimp, section_area));
+  fabric.thickness = woven ? weave.fabric_thickness : fabric.mass.consolidated_thickness();
+  std::array<double, 2> spacing{}, fibre_fraction{};
+  std::array<Section, 2> section{section_of(weave, 0), section_of(weave, 1)};
+  for (std::size_t i = 0; i < 2; ++i) {
+    const TowSpec tow = weave.tow(i);
+    spacing[i] = tow.pitch();
+    // A consolidated direction is as thick as what it holds.
+    if (!woven) {
+      const double share = fabric.mass.solid_thickness[i] / fabric.thickness;
+      section[i] = resized(section[i], tow.width, share * fabric.thickness);
+    }
+    const double crimp = fabric.as_woven_crimp[i], section_area = area(section[i]);
+    const double solid_area = fabric.mass.glass_area[i] + fabric.mass.resin_area[i];
+    fabric.tow_solid_fraction[i] = section_share(solid_area, crimp, section_area);
+    fibre_fraction[i] = section_share(fabric.mass.glass_area[i], crimp, section_area);
+  }
+  fabric.crossing = crossing_of(spacing, section, fibre_fraction);
   return fabric;
 }
 
-double gap_closure_angle(const CrossingGeometry& unsheared) {
-  return std::acos(std::min(unsheared.section.width / unsheared.pitch, 1.0));
+Section section_of(const WeaveSpec& weave, std::size_t direction) {
+  const TowSpec tow = weave.tow(direction);
+  switch (weave.section) {
+    case SectionShape::ellipse:
+      return PowerEllipseSection{tow.width, tow.thickness, 1.0};
+    case SectionShape::power_ellipse:
+      return PowerEllipseSection{tow.width, tow.thickness, weave.section_power};
+    case SectionShape::capped_lens:
+      return capped_lens(tow.width, tow.thickness, weave.section_cap);
+    case SectionShape::lens:
+      break;
+  }
+  return LensSection{tow.width, tow.thickness};
 }
 
-OpenWidth oblique_width(const CrossingGeometry& unsheared, double shear_angle) {
-  const double pitch = unsheared.pitch, free = unsheared.section.width / pitch;
+ArcPath path_over(const Section& own, const Section& under, double pitch) {
+  return arc_path(pitch, thickness(under), enclosing_radius(under) + 0.5 * thickness(own));
+}
+
+double gap_closure_angle(const TowGeometry& unsheared) {
+  return std::acos(std::min(width(unsheared.section) / unsheared.spacing, 1.0));
+}
+
+double gap_closure_angle(const CrossingGeometry& unsheared) {
+  return std::min(gap_closure_angle(unsheared.tow[0]), gap_closure_angle(unsheared.tow[1]));
+}
+
+OpenWidth oblique_width(const TowGeometry& unsheared, double shear_angle) {
+  const double pitch = unsheared.spacing, free = width(unsheared.section) / pitch;
   const double x = free / std::cos(shear_angle);
   const double dx_dg = x * std::tan(shear_angle);
   // A gapless weave is in contact from the start, so its scatter would change the as-woven tow: half the gap
@@ -75,49 +109,83 @@ OpenWidth oblique_width(const CrossingGeometry& unsheared, double shear_angle) {
 }
 
 CrossingGeometry sheared(const CrossingGeometry& unsheared, double shear_angle) {
-  const double width = oblique_width(unsheared, shear_angle).width;
-  const double free_width = unsheared.section.width / std::cos(shear_angle);
-  CrossingGeometry crossing = crossing_of(unsheared.pitch, width, unsheared.section.thickness,
-                                          unsheared.fibre_fraction * free_width / width);
+  std::array<double, 2> spacing{}, fibre_fraction{};
+  std::array<Section, 2> section{};
+  for (std::size_t i = 0; i < 2; ++i) {
+    const TowGeometry& tow = unsheared.tow[i];
+    const double open = oblique_width(tow, shear_angle).width;
+    const double free_width = width(tow.section) / std::cos(shear_angle);
+    spacing[i] = tow.spacing;
+    section[i] = resized(tow.section, open, thickness(tow.section));
+    fibre_fraction[i] = tow.fibre_fraction * free_width / open;
+  }
+  CrossingGeometry crossing = crossing_of(spacing, section, fibre_fraction);
   crossing.shear_angle = shear_angle;
   return crossing;
+}
+
+double UnitCell::crown() const {
+  double highest = 0.0;
+  for (const Tow& t : tow) highest = std::max(highest, 0.5 * height(t.path) + half_height(t.section, 0.0));
+  return highest;
 }
 
 std::array<double, 2> UnitCell::place(double xi, double eta) const {
   return {xi + eta * std::sin(shear_angle), eta * std::cos(shear_angle)};
 }
 
+PressedFabric pressed(const FabricGeometry& consolidated, double shear_angle) {
+  const double swelling = 1.0 / std::cos(shear_angle);
+  std::array<double, 2> spacing{}, fibre_fraction{};
+  std::array<Section, 2> section{};
+  for (std::size_t i = 0; i < 2; ++i) {
+    const TowGeometry& tow = consolidated.crossing.tow[i];
+    spacing[i] = tow.spacing;
+    section[i] =
+        resized(tow.section, oblique_width(tow, shear_angle).width, thickness(tow.section) * swelling);
+    // The volume of a tow per pitch is its section in the parameter plane times p cos g.
+    fibre_fraction[i] = tow.fibre_fraction * area(tow.section) / area(section[i]) * swelling;
+  }
+  PressedFabric result{crossing_of(spacing, section, fibre_fraction), consolidated.thickness * swelling};
+  result.crossing.shear_angle = shear_angle;
+  return result;
+}
+
 UnitCell unit_cell(const FabricGeometry& fabric, double shear_angle) {
-  const CrossingGeometry crossing = sheared(fabric.crossing, shear_angle);
-  return {fabric.weave, crossing.pitch, crossing.section, crossing.path, shear_angle};
+  return unit_cell(fabric.weave, sheared(fabric.crossing, shear_angle));
+}
+
+UnitCell unit_cell(const WeaveMatrix& weave, const CrossingGeometry& crossing) {
+  const auto shape = [](const TowGeometry& tow) { return UnitCell::Tow{tow.spacing, tow.section, tow.path}; };
+  return {weave, {shape(crossing.tow[0]), shape(crossing.tow[1])}, crossing.shear_angle};
 }
 
 double warp_centre(const UnitCell& cell, int warp, double along) {
-  const Along at = locate(along, cell.pitch);
-  return centre_between(cell, cell.weave.warp_over(warp, at.crossing),
+  const Along at = locate(along, cell.tow[1].spacing);
+  return centre_between(cell.tow[0].path, cell.weave.warp_over(warp, at.crossing),
                         cell.weave.warp_over(warp, at.crossing + 1), at.from);
 }
 
 double weft_centre(const UnitCell& cell, int weft, double along) {
-  const Along at = locate(along, cell.pitch);
-  return centre_between(cell, !cell.weave.warp_over(at.crossing, weft),
+  const Along at = locate(along, cell.tow[0].spacing);
+  return centre_between(cell.tow[1].path, !cell.weave.warp_over(at.crossing, weft),
                         !cell.weave.warp_over(at.crossing + 1, weft), at.from);
 }
 
 Column column(const UnitCell& cell, double xi, double eta) {
-  const double half_width = 0.5 * width(cell.section);
-  const int warp = static_cast<int>(std::lround(eta / cell.pitch));
-  const int weft = static_cast<int>(std::lround(xi / cell.pitch));
-  const double across_warp = eta - warp * cell.pitch, across_weft = xi - weft * cell.pitch;
+  const auto& [warps, wefts] = cell.tow;
+  const int warp = static_cast<int>(std::lround(eta / warps.spacing));
+  const int weft = static_cast<int>(std::lround(xi / wefts.spacing));
+  const double across_warp = eta - warp * warps.spacing, across_weft = xi - weft * wefts.spacing;
   Column found;
-  if (std::abs(across_warp) < half_width) {
-    const double centre = warp_centre(cell, warp, xi), half = half_height(cell.section, across_warp);
+  if (std::abs(across_warp) < 0.5 * width(warps.section)) {
+    const double centre = warp_centre(cell, warp, xi), half = half_height(warps.section, across_warp);
     found.warp = true;
     found.warp_top = centre + half;
     found.warp_bottom = centre - half;
   }
-  if (std::abs(across_weft) < half_width) {
-    const double centre = weft_centre(cell, weft, eta), half = half_height(cell.section, across_weft);
+  if (std::abs(across_weft) < 0.5 * width(wefts.section)) {
+    const double centre = weft_centre(cell, weft, eta), half = half_height(wefts.section, across_weft);
     found.weft = true;
     found.weft_top = centre + half;
     found.weft_bottom = centre - half;
@@ -126,14 +194,15 @@ Column column(const UnitCell& cell, double xi, double eta) {
 }
 
 Penetration penetration(const UnitCell& cell, int samples_per_pitch) {
-  const double step = cell.pitch / samples_per_pitch;
+  const double step_xi = cell.tow[1].spacing / samples_per_pitch;
+  const double step_eta = cell.tow[0].spacing / samples_per_pitch;
   // dxi deta above one sample; cos g turns it into true area.
-  const double patch = step * step * std::cos(cell.shear_angle);
+  const double patch = step_xi * step_eta * std::cos(cell.shear_angle);
   Penetration worst{-std::numeric_limits<double>::infinity(), 0.0, 0.0};
   for (int i = 0; i < samples_per_pitch * cell.weave.warps; ++i)
     for (int j = 0; j < samples_per_pitch * cell.weave.wefts; ++j) {
-      // Samples stand on the crossings too: there lens tows touch, and elsewhere they are apart.
-      const Column c = column(cell, j * step, i * step);
+      // Samples stand on the crossings too: there tows touch, and lens tows are apart elsewhere.
+      const Column c = column(cell, j * step_xi, i * step_eta);
       if (c.warp) worst.tow_volume += patch * (c.warp_top - c.warp_bottom);
       if (c.weft) worst.tow_volume += patch * (c.weft_top - c.weft_bottom);
       if (!c.warp || !c.weft) continue;

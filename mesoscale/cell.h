@@ -12,33 +12,55 @@
 
 namespace heddle::mesoscale {
 
+/// A tow of one family as it stands at a crossing, in the parameter plane.
+struct TowGeometry {
+  double spacing = 0.0;         ///< p: middle to middle of neighbours of the family [m]
+  Section section{};            ///< width in the parameter plane, w_o = min(w / cos g, p), rounded
+  ArcPath path{};               ///< where it changes sides; its pitch is the spacing of the other family
+  double fibre_fraction = 0.0;  ///< V0, glass in the stress-free tow [-]
+
+  bool operator==(const TowGeometry&) const = default;
+};
+
 /// Geometry of one crossing at a trellis angle g. Everything stands in the parameter plane (xi, eta) of an
 /// orthogonal cell of the same pitch; the fabric is its image under x = xi + eta sin g, y = eta cos g. The
 /// map is one-to-one, so tows that are apart stay apart, and it scales all areas by cos g.
+///
+/// Crimp heights: each family rises by the thickness of the other, h1 = t2 and h2 = t1. So the crowns of both
+/// lie at (t1 + t2) / 2, the faces of the fabric are flush, and no path is too steep for the section it goes
+/// round as long as tows are no wider than their pitch.
 struct CrossingGeometry {
-  double shear_angle = 0.0;     ///< g [rad]
-  double pitch = 0.0;           ///< p [m]
-  LensSection section{};        ///< width in the parameter plane, w_o = min(w / cos g, p), rounded
-  ArcPath path{};               ///< where a tow changes sides; h = t
-  double fibre_fraction = 0.0;  ///< V0, glass in the stress-free tow [-]
+  double shear_angle = 0.0;          ///< g [rad]
+  std::array<TowGeometry, 2> tow{};  ///< {warp, weft}
+
+  double area() const { return tow[0].spacing * tow[1].spacing; }  ///< of one crossing at g = 0 [m^2]
+  bool balanced() const { return tow[0] == tow[1]; }
 };
 
-/// The fabric as the later rooms read it: one state, no shear yet.
+/// The fabric as the later rooms read it: one state, no shear yet. Pairs are {warp, weft}.
 struct FabricGeometry {
   WeaveMatrix weave;
   QuarterShares quarters{};
-  std::array<double, 2> interlacing{};  ///< {warp, weft} [-]
+  std::array<double, 2> interlacing{};  ///< [-]
   MassBalance mass;
-  double as_woven_crimp = 0.0;  ///< mean of both directions [-]
-  double tow_solid_fraction = 0.0;
-  double thickness = 0.0;     ///< H of the state [m]
-  CrossingGeometry crossing;  ///< at g = 0
+  std::array<double, 2> as_woven_crimp{};      ///< floats included [-]
+  std::array<double, 2> tow_solid_fraction{};  ///< [-]
+  double thickness = 0.0;                      ///< H of the state [m]
+  CrossingGeometry crossing;                   ///< at g = 0
 };
 
-/// @throws InputError  if weave.pattern is unknown
+/// @throws InputError  if weave.pattern is no weave
 FabricGeometry fabric_geometry(const WeaveSpec& weave, CellState state);
 
-/// Trellis angle at which neighbouring tows touch, acos(w / p) [rad].
+/// As-woven section of one direction. @param direction  0 = warp, 1 = weft
+Section section_of(const WeaveSpec& weave, std::size_t direction);
+
+/// The path of a tow of section `own` over tows of section `under`, `pitch` apart: it rises by their
+/// thickness, round the circle that encloses them and half its own thickness further out.
+ArcPath path_over(const Section& own, const Section& under, double pitch);
+
+/// Trellis angle at which the first neighbouring tows touch, acos(w / p) [rad].
+double gap_closure_angle(const TowGeometry& unsheared);
 double gap_closure_angle(const CrossingGeometry& unsheared);
 
 /// Tow widths scatter about their mean, so gaps close one after another: min(w / cos g, p) is rounded by a
@@ -51,7 +73,7 @@ struct OpenWidth {
   double width;  ///< w_o [m]
   double slope;  ///< d w_o / dg [m/rad]
 };
-OpenWidth oblique_width(const CrossingGeometry& unsheared, double shear_angle);
+OpenWidth oblique_width(const TowGeometry& unsheared, double shear_angle);
 
 /// The crossing at trellis angle g (sign ignored), |g| < 90 deg. Until the gaps close, the tow turns
 /// unchanged; from there its true width is p cos g at constant thickness, and V0 rises by cos g* / cos g
@@ -61,21 +83,35 @@ CrossingGeometry sheared(const CrossingGeometry& unsheared, double shear_angle);
 /// One repeat with every tow, for sampling, pictures and the penetration check. Lengths in the parameter
 /// plane.
 struct UnitCell {
+  struct Tow {
+    double spacing;  ///< middle to middle of neighbours [m]
+    Section section;
+    Path path;  ///< over one spacing of the other family
+  };
   WeaveMatrix weave;
-  double pitch;
-  Section section;
-  Path path;
-  double shear_angle;  ///< [rad]
+  std::array<Tow, 2> tow;  ///< {warp, weft}
+  double shear_angle;      ///< [rad]
 
-  double crimp_height() const { return height(path); }
+  double crown() const;  ///< highest point of any tow above the mid-plane [m]
   std::array<double, 2> size() const {
-    return {pitch * weave.wefts, pitch * weave.warps};
+    return {tow[1].spacing * weave.wefts, tow[0].spacing * weave.warps};
   }  ///< along {xi, eta}
   /// Point of the fabric plane above (xi, eta) [m].
   std::array<double, 2> place(double xi, double eta) const;
 };
 
+UnitCell unit_cell(const WeaveMatrix& weave, const CrossingGeometry& crossing);
 UnitCell unit_cell(const FabricGeometry& fabric, double shear_angle);
+
+/// A fabric that was sheared and then consolidated, without voids: its area has shrunk by cos g, so it is
+/// thicker by 1 / cos g. Tows are as wide as sheared, fill the thickness as the unsheared ones do, and hold
+/// their glass.
+struct PressedFabric {
+  CrossingGeometry crossing;
+  double thickness;  ///< [m]
+};
+/// @param consolidated  at g = 0
+PressedFabric pressed(const FabricGeometry& consolidated, double shear_angle);
 
 /// Height of a tow's centreline above the mid-plane at distance `along` from the tow's first crossing [m].
 double warp_centre(const UnitCell& cell, int warp, double along);

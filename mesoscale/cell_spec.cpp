@@ -110,48 +110,129 @@ void check_forming(Problems& problems, const FormingSpec& f) {
   for (const Bound& bound : bounds) add_if_broken(problems, bound);
 }
 
+// Key of a number of one direction: its own where it has one.
+std::string key_of(std::size_t direction, bool own, const char* name) {
+  const char* block = direction == 0 ? "weave.warp." : "weave.weft.";
+  return own ? std::string(block) + name : std::string("weave.") + name;
+}
+
+struct TowKeys {
+  std::string width, gap, thickness, linear_density;
+};
+TowKeys keys_of(const WeaveSpec& weave, std::size_t direction) {
+  const OwnTow& own = weave.own[direction];
+  return {key_of(direction, own.tow_width.has_value(), "tow_width"),
+          key_of(direction, own.gap.has_value(), "gap"),
+          key_of(direction, own.tow_thickness.has_value(), "tow_thickness"),
+          key_of(direction, own.linear_density.has_value(), "linear_density")};
+}
+
+// Directions that have to be looked at: both, if one has something of its own.
+std::vector<std::size_t> directions_of(const WeaveSpec& weave) {
+  if (weave.own == std::array<OwnTow, 2>{}) return {0};
+  return {0, 1};
+}
+
+// What a direction has of its own, by the bounds of the common keys.
+void check_own_ranges(Problems& problems, const WeaveSpec& w) {
+  for (std::size_t i = 0; i < 2; ++i) {
+    const OwnTow& own = w.own[i];
+    const TowKeys keys = keys_of(w, i);
+    const TowSpec tow = w.tow(i);
+    const Bound bounds[] = {
+        {keys.width.c_str(), tow.width, "mm", 1e3, !own.tow_width || (tow.width > 0.0 && tow.width < 0.1),
+         "must satisfy 0 < tow_width < 100 mm", "Table 1 gives 4.64 mm; write 4.64 mm."},
+        {keys.gap.c_str(), tow.gap, "mm", 1e3, !own.gap || (tow.gap >= 0.0 && tow.gap < 0.1),
+         "must satisfy 0 <= gap < 100 mm", "Table 1 gives 0.75 mm; write 0.75 mm."},
+        {keys.thickness.c_str(), tow.thickness, "mm", 1e3,
+         !own.tow_thickness || (tow.thickness > 0.0 && tow.thickness < 0.02),
+         "must satisfy 0 < tow_thickness < 20 mm", "Table 1 gives 0.75 mm; write 0.75 mm."},
+        {keys.linear_density.c_str(), tow.linear_density, "tex", 1e6,
+         !own.linear_density || (tow.linear_density > 0.0 && tow.linear_density < 0.1),
+         "must satisfy 0 < linear_density < 100000 tex", "Table 1's fabric has 1872 tex; write 1872 tex."},
+    };
+    for (const Bound& bound : bounds) add_if_broken(problems, bound);
+  }
+}
+
+void check_section(Problems& problems, const WeaveSpec& w) {
+  const Bound bounds[] = {
+      {"weave.section_power", w.section_power, "", 1.0, within(0.2, w.section_power, 4.0),
+       "must lie between 0.2 and 4", "1 is the ellipse, smaller is fuller, 2 is nearly the lens."},
+      {"weave.section_cap", w.section_cap, "", 1.0, within(0.1, w.section_cap, 1.0),
+       "must lie between 0.1 and 1", "1 is the lens; 0.6 leaves two fifths of the width to the flanks."},
+  };
+  for (const Bound& bound : bounds) add_if_broken(problems, bound);
+}
+
 // Beyond these the crowns of neighbouring tows and the crossings no longer make a cloth, and the contact
 // tables end.
 void check_proportions(Problems& problems, const WeaveSpec& w) {
-  const double slenderness = w.tow_width / w.tow_thickness;
-  if (slenderness < 2.0 || slenderness > 40.0)
-    problems.push_back({"weave.tow_width.proportion"_rule,
-                        "weave.tow_width",
-                        fmt::format("{:.6g} mm", 1e3 * w.tow_width),
-                        fmt::format("must be 2 to 40 times the tow thickness ({:.6g} mm); it is {:.3g} times",
-                                    1e3 * w.tow_thickness, slenderness),
-                        "Table 1 gives 4.64 mm and 0.75 mm.",
-                        "",
-                        0,
-                        {"weave.tow_thickness"}});
-  if (w.gap > w.tow_width)
-    problems.push_back(
-        {"weave.gap.proportion"_rule,
-         "weave.gap",
-         fmt::format("{:.6g} mm", 1e3 * w.gap),
-         fmt::format("must not exceed the tow width ({:.6g} mm): wider apart the tows do not make a cloth",
-                     1e3 * w.tow_width),
-         "Table 1 gives 0.75 mm.",
-         "",
-         0,
-         {"weave.tow_width"}});
+  for (const std::size_t i : directions_of(w)) {
+    const TowSpec tow = w.tow(i);
+    const TowKeys keys = keys_of(w, i);
+    const double slenderness = tow.width / tow.thickness;
+    if (slenderness < 2.0 || slenderness > 40.0)
+      problems.push_back(
+          {"*.proportion"_family.of(keys.width),
+           keys.width,
+           fmt::format("{:.6g} mm", 1e3 * tow.width),
+           fmt::format("must be 2 to 40 times the tow thickness ({:.6g} mm); it is {:.3g} times",
+                       1e3 * tow.thickness, slenderness),
+           "Table 1 gives 4.64 mm and 0.75 mm.",
+           "",
+           0,
+           {keys.thickness}});
+    if (tow.gap > tow.width)
+      problems.push_back(
+          {"*.proportion"_family.of(keys.gap),
+           keys.gap,
+           fmt::format("{:.6g} mm", 1e3 * tow.gap),
+           fmt::format("must not exceed the tow width ({:.6g} mm): wider apart the tows do not make a cloth",
+                       1e3 * tow.width),
+           "Table 1 gives 0.75 mm.",
+           "",
+           0,
+           {keys.width}});
+  }
 }
 
 void check_thickness(Problems& problems, const WeaveSpec& w) {
   // One percent: Table 1 rounds to 0.05 mm, and the height of the crowns follows the tows, not the table.
-  const double from_tows = 2.0 * w.tow_thickness;
+  const std::array<double, 2> tow{w.tow(0).thickness, w.tow(1).thickness};
+  const double from_tows = tow[0] + tow[1];
   if (std::abs(w.fabric_thickness - from_tows) <= 0.01 * from_tows) return;
+  const bool alike = tow[0] == tow[1];
   problems.push_back(
       {"weave.fabric_thickness.consistent"_rule,
        "weave.fabric_thickness",
        fmt::format("{:.6g} mm", 1e3 * w.fabric_thickness),
        fmt::format("must be the two tow thicknesses on top of each other, {:.6g} mm, within 1 %",
                    1e3 * from_tows),
-       fmt::format("Write fabric_thickness: {:.6g} mm, or tow_thickness: {:.6g} mm.", 1e3 * from_tows,
-                   0.5e3 * w.fabric_thickness),
+       alike ? fmt::format("Write fabric_thickness: {:.6g} mm, or tow_thickness: {:.6g} mm.", 1e3 * from_tows,
+                           0.5e3 * w.fabric_thickness)
+             : fmt::format("Write fabric_thickness: {:.6g} mm.", 1e3 * from_tows),
        "",
        0,
-       {"weave.tow_thickness"}});
+       {keys_of(w, 0).thickness, keys_of(w, 1).thickness}});
+}
+
+// Each direction rises by the thickness of the other, so the thinner one crimps the more: beyond this it
+// would climb rather than weave.
+void check_balance(Problems& problems, const WeaveSpec& w) {
+  const std::array<double, 2> tow{w.tow(0).thickness, w.tow(1).thickness};
+  const std::size_t thick = tow[0] >= tow[1] ? 0 : 1;
+  if (tow[thick] <= 4.0 * tow[1 - thick]) return;
+  const std::string key = keys_of(w, thick).thickness, other = keys_of(w, 1 - thick).thickness;
+  problems.push_back({"*.balance"_family.of(key),
+                      key,
+                      fmt::format("{:.6g} mm", 1e3 * tow[thick]),
+                      fmt::format("must be at most 4 times the thickness of the crossing tows ({:.6g} mm)",
+                                  1e3 * tow[1 - thick]),
+                      "Tows of such different size do not weave; give both directions a thickness.",
+                      "",
+                      0,
+                      {other}});
 }
 
 // The mass of a tow's materials against the room its weave leaves them.
@@ -164,45 +245,66 @@ const std::vector<std::string> keys_of_the_packing{"weave.pattern",
                                                    "weave.fibre_mass_fraction",
                                                    "weave.fibre_density",
                                                    "weave.resin_density",
+                                                   "weave.section",
+                                                   "weave.section_power",
+                                                   "weave.section_cap",
+                                                   "weave.warp.tow_width",
+                                                   "weave.warp.gap",
+                                                   "weave.warp.tow_thickness",
+                                                   "weave.warp.linear_density",
+                                                   "weave.weft.tow_width",
+                                                   "weave.weft.gap",
+                                                   "weave.weft.tow_thickness",
+                                                   "weave.weft.linear_density",
                                                    "cell.state"};
 
 void check_packing(Problems& problems, const CellSpec& spec) {
-  const FabricGeometry fabric = fabric_geometry(spec.weave, CellState::as_woven);
-  if (fabric.tow_solid_fraction > 1.0) {
-    problems.push_back(
-        {"weave.tow_thickness.holds_material"_rule, "weave.tow_thickness",
-         fmt::format("{:.6g} mm", 1e3 * spec.weave.tow_thickness),
-         fmt::format("the tow section must hold its glass and resin, but they fill {:.3g} of it",
-                     fabric.tow_solid_fraction),
-         "Give a thicker or wider tow, or a smaller linear_density.", "", 0, keys_of_the_packing});
-    return;
-  }
+  const FabricGeometry woven = fabric_geometry(spec.weave, CellState::as_woven);
   // The fullest tow decides: as woven, or squeezed flat in the consolidated sheet.
-  const double fraction = spec.state == CellState::as_woven
-                              ? fabric.crossing.fibre_fraction
-                              : fabric_geometry(spec.weave, spec.state).crossing.fibre_fraction;
-  if (fraction <= 0.75) return;
-  problems.push_back(
-      {"weave.fibre_mass_fraction.packing"_rule, "weave.fibre_mass_fraction",
-       fmt::format("{:.6g} %", 100.0 * spec.weave.fibre_mass_fraction),
-       fmt::format("fibres must fill at most 0.75 of the tow, but fill {:.3g}", fraction),
-       "Parallel fibres reach 0.785 in a square and 0.907 in a hexagonal array: give less glass, or a "
-       "thicker or wider tow.",
-       "", 0, keys_of_the_packing});
+  const FabricGeometry state =
+      spec.state == CellState::as_woven ? woven : fabric_geometry(spec.weave, spec.state);
+  for (const std::size_t i : directions_of(spec.weave)) {
+    const std::string key = keys_of(spec.weave, i).thickness;
+    if (woven.tow_solid_fraction[i] > 1.0) {
+      problems.push_back({"*.holds_material"_family.of(key), key,
+                          fmt::format("{:.6g} mm", 1e3 * spec.weave.tow(i).thickness),
+                          fmt::format("the tow section must hold its glass and resin, but they fill {:.3g} "
+                                      "of it",
+                                      woven.tow_solid_fraction[i]),
+                          "Give a thicker or wider tow, or a smaller linear_density.", "", 0,
+                          keys_of_the_packing});
+      continue;
+    }
+    const double fraction = state.crossing.tow[i].fibre_fraction;
+    if (fraction <= 0.75) continue;
+    return problems.push_back(
+        {"weave.fibre_mass_fraction.packing"_rule, "weave.fibre_mass_fraction",
+         fmt::format("{:.6g} %", 100.0 * spec.weave.fibre_mass_fraction),
+         fmt::format("fibres must fill at most 0.75 of the tow, but fill {:.3g}", fraction),
+         "Parallel fibres reach 0.785 in a square and 0.907 in a hexagonal array: give less glass, or a "
+         "thicker or wider tow.",
+         "", 0, keys_of_the_packing});
+  }
 }
 
 }  // namespace
 
+TowSpec WeaveSpec::tow(std::size_t direction) const {
+  const OwnTow& tow = own[direction];
+  return {tow.tow_width.value_or(tow_width), tow.gap.value_or(gap), tow.tow_thickness.value_or(tow_thickness),
+          tow.linear_density.value_or(linear_density)};
+}
+
 Problems check(const CellSpec& spec) {
-  Problems problems;
-  if (const std::string fault = parse_weave(spec.weave.pattern).fault; !fault.empty())
-    problems.push_back({"weave.pattern.unknown"_rule, "weave.pattern", spec.weave.pattern, fault,
-                        "Write plain, twill 2/2 or satin 8/3."});
+  Problems problems = check_pattern(spec.weave.pattern);
   const std::size_t before = problems.size();
   check_weave_ranges(problems, spec.weave);
+  check_own_ranges(problems, spec.weave);
+  check_section(problems, spec.weave);
   if (problems.size() == before) {
     check_proportions(problems, spec.weave);
     check_thickness(problems, spec.weave);
+    check_balance(problems, spec.weave);
   }
   // Packing needs a geometry, and so sound numbers.
   if (problems.empty()) check_packing(problems, spec);

@@ -1,6 +1,8 @@
 #pragma once
 
 #include <array>
+#include <cstddef>
+#include <optional>
 #include <string>
 
 #include "core/problem.h"
@@ -8,9 +10,29 @@
 
 namespace heddle::mesoscale {
 
+/// The tows of one direction. SI units.
+struct TowSpec {
+  double width;           ///< w [m]
+  double gap;             ///< g, between neighbours [m]
+  double thickness;       ///< t [m]
+  double linear_density;  ///< of one commingled tow [kg/m]
+
+  double pitch() const { return width + gap; }
+};
+
+/// What one direction has of its own; the rest is common to both.
+struct OwnTow {
+  std::optional<double> tow_width, gap, tow_thickness;  ///< [m]
+  std::optional<double> linear_density;                 ///< [kg/m]
+
+  bool operator==(const OwnTow&) const = default;
+};
+
+enum class SectionShape { lens, ellipse, power_ellipse, capped_lens };
+
 /// What the user says of the weave (paper, Table 1). SI units.
 struct WeaveSpec {
-  std::string pattern = "plain";      ///< "plain", "twill m/n", "satin N/k"
+  std::string pattern = "plain";      ///< as parse_weave takes it
   double tow_width = 4.64e-3;         ///< w [m]
   double gap = 0.75e-3;               ///< g [m]
   double tow_thickness = 0.75e-3;     ///< t [m]
@@ -21,6 +43,13 @@ struct WeaveSpec {
   double resin_density = 905.0;       ///< [kg/m^3]
   double fibre_modulus = 72.4e9;      ///< [Pa]
   double fibre_diameter = 18.5e-6;    ///< [m], recalled
+  SectionShape section = SectionShape::lens;
+  double section_power = 0.5;   ///< n of the power ellipse [-]
+  double section_cap = 0.6;     ///< arc of the capped lens over its width [-]
+  std::array<OwnTow, 2> own{};  ///< {warp, weft}
+
+  /// With what the direction has of its own. @param direction  0 = warp, 1 = weft
+  TowSpec tow(std::size_t direction) const;
 
   bool operator==(const WeaveSpec&) const = default;
 };
@@ -59,12 +88,12 @@ struct CellSummary {
   double areal_density = 0.0;              ///< [kg/m^2]
   std::array<double, 2> crimp{};           ///< l/p - 1, {warp, weft} [-]
   std::array<double, 2> crimp_angle{};     ///< [rad]
-  double gap_closure_angle = 0.0;          ///< trellis angle at which neighbouring tows touch [rad]
+  double gap_closure_angle = 0.0;          ///< trellis angle at which the first neighbours touch [rad]
   double locking_angle = 0.0;              ///< shear tangent 10 times its value at 20 deg [rad]
-  double tow_fibre_volume_fraction = 0.0;  ///< [-]
+  double tow_fibre_volume_fraction = 0.0;  ///< [-]; of the fuller direction, as the next
   double tow_solid_volume_fraction = 0.0;  ///< glass and resin [-]
   double contact_area_fraction = 0.0;      ///< one face, depth 0.05 mm, gamma 0 [-]
-  double tow_section_area = 0.0;           ///< vertical cut [m^2]
+  double tow_section_area = 0.0;           ///< vertical cut of a warp [m^2]
   double consolidated_thickness = 0.0;     ///< [m]
 };
 

@@ -1,30 +1,32 @@
 #include "mesoscale/closure.h"
 
-#include "mesoscale/path.h"
-#include "mesoscale/section.h"
+#include "mesoscale/cell.h"
 
 namespace heddle::mesoscale {
 
-MassBalance mass_balance(const WeaveSpec& weave, double mean_crimp) {
-  const double pitch = weave.tow_width + weave.gap;
+MassBalance mass_balance(const WeaveSpec& weave, const std::array<double, 2>& crimp) {
   MassBalance balance;
-  balance.glass_area = weave.linear_density * weave.fibre_mass_fraction / weave.fibre_density;
-  balance.resin_area = weave.linear_density * (1.0 - weave.fibre_mass_fraction) / weave.resin_density;
-  const double length_per_area = 2.0 * (1.0 + mean_crimp) / pitch;
-  balance.areal_density = weave.linear_density * length_per_area;
-  balance.consolidated_thickness = (balance.glass_area + balance.resin_area) * length_per_area;
+  for (std::size_t i = 0; i < 2; ++i) {
+    const TowSpec tow = weave.tow(i);
+    const double length_per_area = (1.0 + crimp[i]) / tow.pitch();
+    balance.glass_area[i] = tow.linear_density * weave.fibre_mass_fraction / weave.fibre_density;
+    balance.resin_area[i] = tow.linear_density * (1.0 - weave.fibre_mass_fraction) / weave.resin_density;
+    balance.areal_density += tow.linear_density * length_per_area;
+    balance.solid_thickness[i] = (balance.glass_area[i] + balance.resin_area[i]) * length_per_area;
+  }
   return balance;
 }
 
-double section_share(double area_along_fibres, double mean_crimp, double section_area) {
-  return area_along_fibres * (1.0 + mean_crimp) / section_area;
+double section_share(double area_along_fibres, double crimp, double section_area) {
+  return area_along_fibres * (1.0 + crimp) / section_area;
 }
 
-double as_woven_crimp(const WeaveSpec& weave, double interlacing_share) {
-  const LensSection section{weave.tow_width, weave.tow_thickness};
-  const double pitch = weave.tow_width + weave.gap;
-  const ArcPath path = arc_path(pitch, weave.tow_thickness, section.radius() + 0.5 * section.thickness);
-  return interlacing_share * path.crimp();
+std::array<double, 2> as_woven_crimp(const WeaveSpec& weave, const std::array<double, 2>& interlacing) {
+  const std::array<Section, 2> sections{section_of(weave, 0), section_of(weave, 1)};
+  std::array<double, 2> crimp{};
+  for (std::size_t i = 0; i < 2; ++i)
+    crimp[i] = interlacing[i] * path_over(sections[i], sections[1 - i], weave.tow(1 - i).pitch()).crimp();
+  return crimp;
 }
 
 }  // namespace heddle::mesoscale

@@ -60,4 +60,46 @@ double TowSqueeze::squeeze_at(double fibre_fraction_reached) const {
   return thickness_ * (1.0 - fibre_fraction_ / fibre_fraction_reached);
 }
 
+PairSqueeze::PairSqueeze(const TowSqueeze& first, const TowSqueeze& second, bool alike)
+    : first_(first), second_(second), alike_(alike) {}
+
+TowSqueeze::Value PairSqueeze::evaluate(double squeeze) const {
+  if (squeeze <= 0.0) return {0.0, 0.0, 0.0};
+  if (alike_) {
+    const TowSqueeze::Value each = first_.evaluate(0.5 * squeeze);
+    return {2.0 * each.energy, each.stress, 0.5 * each.slope};
+  }
+  const double own = share_of_first(squeeze);
+  const TowSqueeze::Value a = first_.evaluate(own), b = second_.evaluate(squeeze - own);
+  // Springs in series.
+  return {a.energy + b.energy, a.stress, a.slope * (b.slope / (a.slope + b.slope))};
+}
+
+double PairSqueeze::stress(double squeeze) const {
+  if (squeeze <= 0.0) return 0.0;
+  return first_.stress(alike_ ? 0.5 * squeeze : share_of_first(squeeze));
+}
+
+double PairSqueeze::squeeze_at(double fibre_fraction_reached) const {
+  return first_.squeeze_at(fibre_fraction_reached) + second_.squeeze_at(fibre_fraction_reached);
+}
+
+// Newton's method on s1(x) = s2(delta - x), kept in its bracket; the difference grows with x.
+double PairSqueeze::share_of_first(double squeeze) const {
+  const double both = first_.thickness() + second_.thickness();
+  double low = std::max(squeeze - second_.thickness(), 0.0), high = std::min(squeeze, first_.thickness());
+  double x = squeeze * first_.thickness() / both;
+  for (int k = 0; k < 100; ++k) {
+    const TowSqueeze::Value a = first_.evaluate(x), b = second_.evaluate(squeeze - x);
+    const double excess = a.stress - b.stress;
+    if (std::abs(excess) <= 1e-14 * (a.stress + b.stress)) break;
+    (excess > 0.0 ? high : low) = x;
+    const double next = x - excess / (a.slope + b.slope);
+    const double moved = next > low && next < high ? next : 0.5 * (low + high);
+    if (moved == x) break;
+    x = moved;
+  }
+  return x;
+}
+
 }  // namespace heddle::mesoscale

@@ -35,6 +35,8 @@ class TowSqueeze {
   /// @param fibre_fraction  V0 [-], > 0
   TowSqueeze(const CompactionLaw& law, double thickness, double fibre_fraction);
 
+  double thickness() const { return thickness_; }
+
   struct Value {
     double energy;  ///< integral of the stress over delta, closed form [J/m^2]
     double stress;  ///< s [Pa]
@@ -50,6 +52,25 @@ class TowSqueeze {
   CompactionLaw law_;
   double thickness_, fibre_fraction_;
   CompactionLaw::Value start_;  ///< of the stress-free tow
+};
+
+/// Two tows squeezed together by delta in all: each gives way until both carry the same stress, so that the
+/// stress is the slope of the energy. Tows that are alike give way by half each.
+class PairSqueeze {
+ public:
+  PairSqueeze(const TowSqueeze& first, const TowSqueeze& second, bool alike);
+
+  /// Energy of both tows; delta < 0 gives zeros.
+  TowSqueeze::Value evaluate(double squeeze) const;
+  double stress(double squeeze) const;
+  /// Squeeze at which the fibres of each tow reach volume fraction V [m].
+  double squeeze_at(double fibre_fraction_reached) const;
+
+ private:
+  double share_of_first(double squeeze) const;  ///< what the first tow gives way [m]
+
+  TowSqueeze first_, second_;
+  bool alike_;
 };
 
 }  // namespace heddle::mesoscale

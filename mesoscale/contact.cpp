@@ -16,18 +16,25 @@ namespace heddle::mesoscale {
 
 namespace {
 
-// One kind of quarter crossing under a plate at depth d.
+// One kind of quarter crossing under a plate at depth d: u along the upper tow, v across it.
 struct Quarter {
   const CrossingGeometry& crossing;
+  std::size_t top;  ///< 0: the warp is the upper tow
   bool upper_floats, lower_floats;
   double depth;
 
-  double half_pitch() const { return 0.5 * crossing.pitch; }
-  double half_width() const { return 0.5 * crossing.section.width; }
-  double path_drop(bool floats, double u) const { return floats ? 0.0 : crossing.path.drop(u); }
-  double upper(double u, double v) const { return path_drop(upper_floats, u) + crossing.section.drop(v); }
+  const TowGeometry& upper_tow() const { return crossing.tow[top]; }
+  const TowGeometry& lower_tow() const { return crossing.tow[1 - top]; }
+  double length() const { return 0.5 * lower_tow().spacing; }  ///< of the quarter along u
+  double breadth() const { return 0.5 * upper_tow().spacing; }
+  static double path_drop(const TowGeometry& tow, bool floats, double u) {
+    return floats ? 0.0 : tow.path.drop(u);
+  }
+  double upper(double u, double v) const {
+    return path_drop(upper_tow(), upper_floats, u) + drop(upper_tow().section, v);
+  }
   double lower(double u, double v) const {
-    return crossing.path.height - path_drop(lower_floats, v) + crossing.section.drop(u);
+    return lower_tow().path.height - path_drop(lower_tow(), lower_floats, v) + drop(lower_tow().section, u);
   }
 
   struct Touched {
@@ -39,34 +46,38 @@ struct Quarter {
 };
 
 Quarter::Touched Quarter::touched(double u) const {
-  const double left = depth - path_drop(upper_floats, u);
-  double end = left > 0.0 ? std::min(crossing.section.reach(left), half_width()) : 0.0;
-  double start = half_pitch();
-  if (u < half_width() && !lower_floats) {
-    const double must_fall = crossing.path.height + crossing.section.drop(u) - depth;
-    if (must_fall < 0.5 * crossing.path.height) start = crossing.path.reach(must_fall);
+  const double left = depth - path_drop(upper_tow(), upper_floats, u);
+  double end =
+      left > 0.0 ? std::min(reach(upper_tow().section, left), 0.5 * width(upper_tow().section)) : 0.0;
+  double start = breadth();
+  const TowGeometry& below = lower_tow();
+  if (u < 0.5 * width(below.section) && !lower_floats) {
+    const double must_fall = below.path.height + drop(below.section, u) - depth;
+    if (must_fall < 0.5 * below.path.height) start = below.path.reach(must_fall);
   }
   if (end > start) {
     // Both faces are below the plate here: the higher one is touched. Their difference grows with v.
     const auto difference = [&](double v) { return upper(u, v) - lower(u, v); };
     const double at_start = difference(start), at_end = difference(end);
-    const double change =
-        at_start >= 0.0 ? start
-        : at_end <= 0.0 ? end
-                        : bracketed_root(start, at_start, end, at_end, 1e-13 * crossing.pitch, difference);
-    start = change;
+    const double change = at_start >= 0.0 ? start
+                          : at_end <= 0.0 ? end
+                                          : bracketed_root(start, at_start, end, at_end,
+                                                           1e-13 * upper_tow().spacing, difference);
+    // Lens tows never get here with a root: the upper face is the higher one as far as it goes.
+    start = end = change;
   }
   return {end, start};
 }
 
 // Where the touched intervals change their kind along u.
 std::array<double, 6> Quarter::kinks() const {
-  const double edge = half_pitch();
-  const double fallen =
-      upper_floats || depth >= 0.5 * crossing.path.height ? edge : crossing.path.reach(depth);
-  const double above_lower = depth - 0.5 * crossing.path.height;
-  const double lower_end = lower_floats ? 0.0 : crossing.section.reach(above_lower);
-  std::array<double, 6> u{0.0, fallen, std::min(crossing.path.wrap(), edge), half_width(), lower_end, edge};
+  const double edge = length();
+  const ArcPath &over = upper_tow().path, &under = lower_tow().path;
+  const double fallen = upper_floats || depth >= 0.5 * over.height ? edge : over.reach(depth);
+  const double above_lower = depth - 0.5 * under.height;
+  const double lower_end = lower_floats ? 0.0 : reach(lower_tow().section, above_lower);
+  std::array<double, 6> u{0.0,       fallen, std::min(over.wrap(), edge), 0.5 * width(lower_tow().section),
+                          lower_end, edge};
   std::sort(u.begin(), u.end());
   return u;
 }
@@ -84,16 +95,21 @@ double over_quarter(const Quarter& quarter, int panels, const Inside& inside) {
 
 template <class Inside>
 double cell_average(const PlateContact& plate, double depth, const Inside& inside) {
+  // Of a balanced crossing it does not matter which tow is on top.
+  const bool alike = plate.crossing.balanced();
   double sum = 0.0;
-  for (int upper = 0; upper < 2; ++upper)
-    for (int lower = 0; lower < 2; ++lower) {
-      const double share = plate.quarters[static_cast<std::size_t>(upper)][static_cast<std::size_t>(lower)];
-      if (share == 0.0) continue;
-      const Quarter quarter{plate.crossing, upper == 1, lower == 1, depth};
-      sum += share * over_quarter(quarter, plate.panels,
-                                  [&](double u, const Quarter::Touched& t) { return inside(quarter, u, t); });
-    }
-  const double quarter_area = 0.25 * plate.crossing.pitch * plate.crossing.pitch;
+  for (std::size_t top = 0; top < (alike ? 1 : 2); ++top)
+    for (std::size_t upper = 0; upper < 2; ++upper)
+      for (std::size_t lower = 0; lower < 2; ++lower) {
+        const double share =
+            plate.quarters[top][upper][lower] + (alike ? plate.quarters[1][upper][lower] : 0.0);
+        if (share == 0.0) continue;
+        const Quarter quarter{plate.crossing, top, upper == 1, lower == 1, depth};
+        sum += share * over_quarter(quarter, plate.panels, [&](double u, const Quarter::Touched& t) {
+                 return inside(quarter, u, t);
+               });
+      }
+  const double quarter_area = 0.25 * plate.crossing.area();
   return sum / quarter_area;
 }
 
@@ -130,7 +146,8 @@ std::vector<double> usable_angles(const CrossingGeometry& unsheared, const Conta
   std::vector<double> angles;
   for (const double degrees : grid.shear_angles_deg) {
     const double angle = degrees * std::numbers::pi / 180.0;
-    if (angles.empty() || sheared(unsheared, angle).fibre_fraction <= packed_fibre_fraction)
+    const std::array<TowGeometry, 2> tow = sheared(unsheared, angle).tow;
+    if (angles.empty() || std::max(tow[0].fibre_fraction, tow[1].fibre_fraction) <= packed_fibre_fraction)
       angles.push_back(angle);
   }
   return angles;
@@ -152,22 +169,24 @@ double error_against_half(PlateContact plate, const ContactGrid& grid) {
 
 double PlateContact::touched_fraction(double depth) const {
   return cell_average(*this, depth, [](const Quarter& quarter, double, const Quarter::Touched& t) {
-    return t.upper_end + quarter.half_pitch() - t.lower_start;
+    return t.upper_end + quarter.breadth() - t.lower_start;
   });
 }
 
 double PlateContact::pressure(double depth) const {
   constexpr int across = 2;
   return cell_average(*this, depth, [&](const Quarter& quarter, double u, const Quarter::Touched& t) {
+    const TowSqueeze &above = squeeze[quarter.top], &below = squeeze[1 - quarter.top];
     return integrate(0.0, t.upper_end, across,
-                     [&](double v) { return squeeze.stress(depth - quarter.upper(u, v)); }) +
-           integrate(t.lower_start, quarter.half_pitch(), across,
-                     [&](double v) { return squeeze.stress(depth - quarter.lower(u, v)); });
+                     [&](double v) { return above.stress(depth - quarter.upper(u, v)); }) +
+           integrate(t.lower_start, quarter.breadth(), across,
+                     [&](double v) { return below.stress(depth - quarter.lower(u, v)); });
   });
 }
 
 double PlateContact::depth_at(double wanted) const {
-  const double deepest = squeeze.squeeze_at(1.2);
+  // The tow that packs first sets the depth.
+  const double deepest = std::min(squeeze[0].squeeze_at(1.2), squeeze[1].squeeze_at(1.2));
   return depth_between(wanted, 1e-9 * deepest, deepest);
 }
 
@@ -187,12 +206,17 @@ double PlateContact::depth_between(double wanted, double shallow, double deep) c
 
 PlateContact plate_contact(const FabricGeometry& fabric, const CompactionLaw& law, double shear_angle) {
   const CrossingGeometry crossing = sheared(fabric.crossing, shear_angle);
-  return {crossing, fabric.quarters, TowSqueeze(law, crossing.section.thickness, crossing.fibre_fraction)};
+  const auto squeeze = [&](const TowGeometry& tow) {
+    return TowSqueeze(law, thickness(tow.section), tow.fibre_fraction);
+  };
+  return {crossing, fabric.quarters, {squeeze(crossing.tow[0]), squeeze(crossing.tow[1])}};
 }
 
 double shallow_touched_fraction(const CrossingGeometry& crossing, double depth) {
-  const double radii = std::sqrt(crossing.section.radius() * crossing.path.radius);
-  return 2.0 * std::numbers::pi * depth * radii / (crossing.pitch * crossing.pitch);
+  double radii = 0.0;
+  for (const TowGeometry& tow : crossing.tow)
+    radii += 0.5 * std::sqrt(crown_radius(tow.section) * tow.path.radius);
+  return 2.0 * std::numbers::pi * depth * radii / crossing.area();
 }
 
 ContactTables contact_tables(const FabricGeometry& fabric, const CompactionLaw& law,

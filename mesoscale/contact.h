@@ -1,5 +1,6 @@
 #pragma once
 
+#include <array>
 #include <vector>
 
 #include "core/curve.h"
@@ -10,16 +11,16 @@
 namespace heddle::mesoscale {
 
 /// A rigid flat plate pressed by d below the crowns of one face. Above a quarter crossing (u along the upper
-/// tow, v across it, both in [0, p/2]) the faces lie below the crown plane by
-///     upper tow: D_a(u) + L(v), v <= w/2      lower tow: h - D_b(v) + L(u), u <= w/2
-/// with L the lens drop and D the path drop of a step that changes sides (0 where the tow floats). So for
+/// tow a, v across it, up to half a pitch of the lower tow b and of a) the faces lie below the crown plane by
+///     upper tow: D_a(u) + L_a(v), v <= w_a/2      lower tow: h_b - D_b(v) + L_b(u), u <= w_b/2
+/// with L the section drop and D the path drop of a step that changes sides (0 where the tow floats). So for
 /// each u the touched v form intervals with closed-form ends, and only u is left to integrate. See
 /// docs/theory/mesoscale.md.
 struct PlateContact {
   CrossingGeometry crossing;
   QuarterShares quarters;
-  TowSqueeze squeeze;
-  int panels = 8;  ///< six-point panels between kinks along u
+  std::array<TowSqueeze, 2> squeeze;  ///< of a {warp, weft}
+  int panels = 8;                     ///< six-point panels between kinks along u
 
   /// phi: touched area over cell area; the shear map scales both alike [-].
   double touched_fraction(double depth) const;
@@ -33,7 +34,8 @@ struct PlateContact {
 
 PlateContact plate_contact(const FabricGeometry& fabric, const CompactionLaw& law, double shear_angle);
 
-/// phi = 2 pi d sqrt(R R') / p^2: crowns as paraboloids, for small d in a plain weave [-].
+/// phi = 2 pi d sqrt(R R') / p^2, mean of both families, with R at the crown: crowns as paraboloids, for
+/// small d in a plain weave [-].
 double shallow_touched_fraction(const CrossingGeometry& crossing, double depth);
 
 struct ContactTables {

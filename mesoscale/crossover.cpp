@@ -9,46 +9,72 @@ namespace heddle::mesoscale {
 
 namespace {
 
-double fibre_fraction_at(const CrossingGeometry& unsheared, double shear_angle) {
-  return sheared(unsheared, shear_angle).fibre_fraction;
+TowSqueeze squeeze_of(const CrossingGeometry& unsheared, double shear_angle, const CompactionLaw& law,
+                      std::size_t tow) {
+  return {law, thickness(unsheared.tow[tow].section),
+          sheared(unsheared, shear_angle).tow[tow].fibre_fraction};
 }
 
 }  // namespace
 
 CrossoverContact::CrossoverContact(const CrossingGeometry& unsheared, double shear_angle,
-                                   const CompactionLaw& law)
-    : squeeze_(law, unsheared.section.thickness, fibre_fraction_at(unsheared, shear_angle)),
-      shear_angle_(shear_angle) {
-  const double edge = 0.5 * unsheared.section.width;
-  const double wrap = std::clamp(unsheared.path.wrap(), 0.25 * edge, edge);
-  const double stretch = sheared(unsheared, shear_angle).section.width / unsheared.section.width;
+                                   const CompactionLaw& law, const FloatShares& floats)
+    : squeeze_(squeeze_of(unsheared, shear_angle, law, 0), squeeze_of(unsheared, shear_angle, law, 1),
+               unsheared.balanced()),
+      shear_angle_(shear_angle),
+      floats_(floats),
+      line_{line_along(unsheared, shear_angle, 0), line_along(unsheared, shear_angle, 1)} {}
+
+CrossoverContact::Line CrossoverContact::line_along(const CrossingGeometry& unsheared, double shear_angle,
+                                                    std::size_t tow) {
+  const ArcPath& path = unsheared.tow[tow].path;
+  const TowGeometry& other = unsheared.tow[1 - tow];
+  const double edge = 0.5 * width(other.section);
+  const double wrap = std::clamp(path.wrap(), 0.25 * edge, edge);
+  const double stretch = oblique_width(other, shear_angle).width / width(other.section);
+  Line line;
   // Fixed points keep energy, force and stiffness exact derivatives of each other. Two panels in the
   // conformal part and two outside.
   const auto add_panels = [&](double from, double to) {
     for (int panel = 0; panel < 2; ++panel)
       for (std::size_t q = 0; q < 6; ++q) {
         const double u = from + 0.5 * (to - from) * (panel + 0.5 * (1.0 + GaussSix::point[q]));
-        place_.push_back(stretch * u);
-        weight_.push_back(stretch * 0.25 * (to - from) * GaussSix::weight[q]);
+        const double fallen = drop(other.section, u);
+        line.place.push_back(stretch * u);
+        line.weight.push_back(stretch * 0.25 * (to - from) * GaussSix::weight[q]);
         // Rounding can leave -1e-19 where the faces coincide.
-        gap_.push_back(std::max(unsheared.section.drop(u) - unsheared.path.drop(u), 0.0));
+        line.gap[0].push_back(std::max(fallen - path.drop(u), 0.0));
+        line.gap[1].push_back(fallen);
       }
   };
   add_panels(0.0, wrap);
   if (edge > wrap) add_panels(wrap, edge);
+  return line;
+}
+
+// add(share of the kind of quarter, weight, squeeze, {i, j}) over all kinds and places.
+template <class Add>
+void CrossoverContact::for_each_place(double approach, const Add& add) const {
+  for (std::size_t warp = 0; warp < 2; ++warp)
+    for (std::size_t weft = 0; weft < 2; ++weft) {
+      const double share = floats_[warp][weft];
+      if (share == 0.0) continue;
+      const std::vector<double>&along = line_[0].gap[warp], &across = line_[1].gap[weft];
+      for (std::size_t i = 0; i < along.size(); ++i)
+        for (std::size_t j = 0; j < across.size(); ++j)
+          add(share * (line_[0].weight[i] * line_[1].weight[j]), approach - along[i] - across[j], i, j);
+    }
 }
 
 CrossoverContact::Value CrossoverContact::evaluate(double approach) const {
   Value sum{0.0, 0.0, 0.0};
   if (approach <= 0.0) return sum;
-  for (std::size_t i = 0; i < gap_.size(); ++i)
-    for (std::size_t j = 0; j < gap_.size(); ++j) {
-      const TowSqueeze::Value at = squeeze_.evaluate(0.5 * (approach - gap_[i] - gap_[j]));
-      const double weight = weight_[i] * weight_[j];
-      sum.energy += weight * 2.0 * at.energy;
-      sum.force += weight * at.stress;
-      sum.stiffness += weight * 0.5 * at.slope;
-    }
+  for_each_place(approach, [&](double weight, double squeeze, std::size_t, std::size_t) {
+    const TowSqueeze::Value at = squeeze_.evaluate(squeeze);
+    sum.energy += weight * at.energy;
+    sum.force += weight * at.stress;
+    sum.stiffness += weight * at.slope;
+  });
   const double area = 4.0 * std::cos(shear_angle_);  // four quarters, true area
   return {area * sum.energy, area * sum.force, area * sum.stiffness};
 }
@@ -56,24 +82,23 @@ CrossoverContact::Value CrossoverContact::evaluate(double approach) const {
 double CrossoverContact::force(double approach) const {
   if (approach <= 0.0) return 0.0;
   double sum = 0.0;
-  for (std::size_t i = 0; i < gap_.size(); ++i)
-    for (std::size_t j = 0; j < gap_.size(); ++j)
-      sum += weight_[i] * weight_[j] * squeeze_.stress(0.5 * (approach - gap_[i] - gap_[j]));
+  for_each_place(approach, [&](double weight, double squeeze, std::size_t, std::size_t) {
+    sum += weight * squeeze_.stress(squeeze);
+  });
   return 4.0 * std::cos(shear_angle_) * sum;
 }
 
 double CrossoverContact::arm(double approach) const {
   const double twist = std::sin(shear_angle_);
   double force = 0.0, moment = 0.0;
-  for (std::size_t i = 0; i < gap_.size(); ++i)
-    for (std::size_t j = 0; j < gap_.size(); ++j) {
-      const double x = place_[i], y = place_[j];
-      const double stress = approach > 0.0 ? squeeze_.stress(0.5 * (approach - gap_[i] - gap_[j])) : 1.0;
-      const double load = weight_[i] * weight_[j] * stress;
-      const double square = x * x + y * y, skew = 2.0 * x * y * twist;
-      force += load;
-      moment += load * 0.5 * (std::sqrt(square + skew) + std::sqrt(square - skew));
-    }
+  for_each_place(approach, [&](double weight, double squeeze, std::size_t i, std::size_t j) {
+    const double x = line_[0].place[i], y = line_[1].place[j];
+    const double stress = approach > 0.0 ? squeeze_.stress(squeeze) : 1.0;
+    const double load = weight * stress;
+    const double square = x * x + y * y, skew = 2.0 * x * y * twist;
+    force += load;
+    moment += load * 0.5 * (std::sqrt(square + skew) + std::sqrt(square - skew));
+  });
   return moment / force;
 }
 

@@ -23,11 +23,11 @@ std::optional<double> depth_below_crowns(const UnitCell& cell, double xi, double
   const Column c = column(cell, xi, eta);
   if (!c.warp && !c.weft) return {};
   const double top = !c.weft ? c.warp_top : !c.warp ? c.weft_top : std::max(c.warp_top, c.weft_top);
-  return 0.5 * cell.crimp_height() + half_height(cell.section, 0.0) - top;
+  return cell.crown() - top;
 }
 
 double fabric_depth(const UnitCell& cell) {
-  return cell.crimp_height() + 2.0 * half_height(cell.section, 0.0);
+  return 2.0 * cell.crown();
 }
 
 // Width up to which resin stands: narrow places fill first.
@@ -157,9 +157,12 @@ class LoadBalance {
 
 double even_fill(const FabricGeometry& fabric) {
   // Per area of the fabric, in m: glass and resin of both families, and the thickness they stand in.
-  const double pitch = fabric.crossing.pitch, length = 1.0 + fabric.as_woven_crimp;
-  const double glass = 2.0 * fabric.mass.glass_area * length / pitch;
-  const double resin = 2.0 * fabric.mass.resin_area * length / pitch;
+  double glass = 0.0, resin = 0.0;
+  for (std::size_t i = 0; i < 2; ++i) {
+    const double length = (1.0 + fabric.as_woven_crimp[i]) / fabric.crossing.tow[i].spacing;
+    glass += fabric.mass.glass_area[i] * length;
+    resin += fabric.mass.resin_area[i] * length;
+  }
   return resin / (fabric.thickness - glass);
 }
 

@@ -14,7 +14,7 @@ FormingModels forming_models(const CellSpec& spec) {
   TensionOptions options;
   options.fibre_modulus = spec.weave.fibre_modulus;
   options.compression_ratio = spec.forming.compression_ratio;
-  options.bending_stiffness = 0.5 * (models.bending[0].value + models.bending[1].value);
+  options.bending_stiffness = {models.bending[0].value, models.bending[1].value};
   models.tension = tension_model(models.fabric, models.compaction, options);
   models.shear = {models.fabric, models.compaction, models.tension, spec.forming.reference_tension,
                   spec.forming.tow_friction};
@@ -26,7 +26,7 @@ std::string describe(const CellSpec& spec) {
   const ResinSpec& r = spec.resin;
   const FormingSpec& f = spec.forming;
   // Shortest text that reads back to the same double, so equal bits give equal text.
-  return fmt::format(
+  std::string text = fmt::format(
       "weave {} {} {} {} {} {} {} {} {} {} {};state {};resin {} {} {} {} {};forming {} {} {} {} {} {} {}",
       w.pattern, w.tow_width, w.gap, w.tow_thickness, w.fabric_thickness, w.linear_density,
       w.fibre_mass_fraction, w.fibre_density, w.resin_density, w.fibre_modulus, w.fibre_diameter,
@@ -34,6 +34,15 @@ std::string describe(const CellSpec& spec) {
       r.film_thickness, r.activation_energy, r.reference_temperature, f.compaction_modulus,
       f.compaction_exponent, f.tow_friction, f.reference_tension, f.in_tow_shear_share, f.bonding,
       f.compression_ratio);
+  if (w.own != std::array<OwnTow, 2>{})
+    for (std::size_t i = 0; i < 2; ++i) {
+      const TowSpec tow = w.tow(i);
+      text += fmt::format(";tow {} {} {} {}", tow.width, tow.gap, tow.thickness, tow.linear_density);
+    }
+  const WeaveSpec lens;
+  if (w.section != lens.section || w.section_power != lens.section_power || w.section_cap != lens.section_cap)
+    text += fmt::format(";section {} {} {}", static_cast<int>(w.section), w.section_power, w.section_cap);
+  return text;
 }
 
 std::string specification_hash(const CellSpec& spec) {

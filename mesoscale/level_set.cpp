@@ -23,6 +23,13 @@ struct Jet {
   double f, d, dd;
 };
 
+const UnitCell::Tow& family(const UnitCell& cell, const TowPiece& tow) {
+  return cell.tow[tow.direction == TowDirection::warp ? 0 : 1];
+}
+const UnitCell::Tow& other_family(const UnitCell& cell, const TowPiece& tow) {
+  return cell.tow[tow.direction == TowDirection::warp ? 1 : 0];
+}
+
 // Where a place is in the tow's own directions.
 struct Local {
   double along, across;
@@ -32,20 +39,22 @@ struct Local {
 class Centreline {
  public:
   Centreline(const UnitCell& cell, const TowPiece& tow)
-      : cell_(cell), tow_(tow), half_(0.5 * cell.crimp_height()) {
-    if (const auto* arc = std::get_if<ArcPath>(&cell.path)) {
+      : cell_(cell), tow_(tow), pitch_(other_family(cell, tow).spacing) {
+    const Path& path = family(cell, tow).path;
+    half_ = 0.5 * height(path);
+    if (const auto* arc = std::get_if<ArcPath>(&path)) {
       radius_ = arc->radius;
       wrap_ = arc->wrap();
       steepest_ = std::tan(arc->angle);
     } else {
-      steepest_ = std::tan(std::get<SinePath>(cell.path).angle());
+      steepest_ = std::tan(std::get<SinePath>(path).angle());
     }
   }
 
   double steepest() const { return steepest_; }
 
   Jet at(double along) const {
-    const double crossing = std::floor(along / cell_.pitch), from = along - crossing * cell_.pitch;
+    const double crossing = std::floor(along / pitch_), from = along - crossing * pitch_;
     const bool first = above(static_cast<int>(crossing)), second = above(static_cast<int>(crossing) + 1);
     if (first == second) return {first ? half_ : -half_, 0.0, 0.0};
     const Jet drop = radius_ > 0.0 ? arc_drop(from) : sine_drop(from);
@@ -61,8 +70,8 @@ class Centreline {
   // ArcPath::drop and SinePath::drop with their derivatives, without asking for the same angle again and
   // again.
   Jet arc_drop(double u) const {
-    if (u > 0.5 * cell_.pitch) {
-      const Jet mirrored = arc_drop(cell_.pitch - u);
+    if (u > 0.5 * pitch_) {
+      const Jet mirrored = arc_drop(pitch_ - u);
       return {2.0 * half_ - mirrored.f, mirrored.d, -mirrored.dd};
     }
     const double v = std::min(u, wrap_), root = std::sqrt(radius_ * radius_ - v * v);
@@ -71,13 +80,13 @@ class Centreline {
     return {on_arc, u / root, radius_ * radius_ / (root * root * root)};
   }
   Jet sine_drop(double u) const {
-    const double k = std::numbers::pi / cell_.pitch;
+    const double k = std::numbers::pi / pitch_;
     return {half_ * (1.0 - std::cos(k * u)), half_ * k * std::sin(k * u), half_ * k * k * std::cos(k * u)};
   }
 
   const UnitCell& cell_;
   TowPiece tow_;
-  double half_, radius_ = 0.0, wrap_ = 0.0, steepest_ = 0.0;
+  double pitch_, half_ = 0.0, radius_ = 0.0, wrap_ = 0.0, steepest_ = 0.0;
 };
 
 // Half a section's outline by a parameter v in which it is smooth up to the edges.
@@ -109,33 +118,63 @@ class LensOutline {
   double half_width_, half_thickness_, radius_;
 };
 
-// The ellipse by its angle from the crown.
-class EllipseOutline {
+// The power ellipse by its angle from the crown: w/2 sin v, t/2 cos^n v.
+class PowerEllipseOutline {
  public:
-  explicit EllipseOutline(const EllipseSection& ellipse)
-      : a_(0.5 * ellipse.width), b_(0.5 * ellipse.thickness) {}
+  explicit PowerEllipseOutline(const PowerEllipseSection& section)
+      : section_(section), a_(0.5 * section.width), b_(0.5 * section.thickness) {}
 
   double half_width() const { return a_; }
-  double edge() const { return 0.5 * std::numbers::pi; }
+  // But for the ellipse, powers of the cosine are not smooth where it vanishes: the outline ends 5e-7 of the
+  // width short of the edge, far below any voxel.
+  double edge() const { return 0.5 * std::numbers::pi - (section_.power == 1.0 ? 0.0 : 1e-3); }
   double above(double across) const { return std::asin(std::clamp(across / a_, -1.0, 1.0)); }
   double steepest() const { return std::numeric_limits<double>::infinity(); }
-  double half_height(double across) const {
-    return b_ * std::sqrt(std::max(1.0 - across * across / (a_ * a_), 0.0));
-  }
+  double half_height(double across) const { return section_.half_height(across); }
   Profile at(double v) const {
-    const double s = std::sin(v), c = std::cos(v);
-    return {{a_ * s, a_ * c, -a_ * s}, {b_ * c, -b_ * s, -b_ * c}};
+    const double n = section_.power, s = std::sin(v), c = std::cos(v);
+    const double falling = n * std::pow(c, n - 1.0) * s;
+    const double bent = n == 1.0 ? 0.0 : n * (n - 1.0) * std::pow(c, n - 2.0) * s * s;
+    const double height = std::pow(c, n);
+    return {{a_ * s, a_ * c, -a_ * s}, {b_ * height, -b_ * falling, b_ * (bent - n * height)}};
   }
 
  private:
+  PowerEllipseSection section_;
   double a_, b_;
 };
 
-LensOutline outline(const LensSection& lens) {
-  return LensOutline(lens);
+// The capped lens by the place across it; its bend jumps where the arc ends.
+class CappedLensOutline {
+ public:
+  explicit CappedLensOutline(const CappedLensSection& section)
+      : section_(section), radius_(section.radius()), flank_(std::tan(section.angle)) {}
+
+  double half_width() const { return 0.5 * section_.width; }
+  double edge() const { return half_width(); }
+  double above(double across) const { return std::clamp(across, -half_width(), half_width()); }
+  double steepest() const { return flank_; }
+  double half_height(double across) const { return section_.half_height(across); }
+  Profile at(double v) const {
+    const double height = 0.5 * section_.thickness - section_.drop(v);
+    if (std::abs(v) > section_.cap) return {{v, 1.0, 0.0}, {height, v > 0.0 ? -flank_ : flank_, 0.0}};
+    const double root = std::sqrt(radius_ * radius_ - v * v);
+    return {{v, 1.0, 0.0}, {height, -v / root, -radius_ * radius_ / (root * root * root)}};
+  }
+
+ private:
+  CappedLensSection section_;
+  double radius_, flank_;
+};
+
+LensOutline outline(const LensSection& section) {
+  return LensOutline(section);
 }
-EllipseOutline outline(const EllipseSection& ellipse) {
-  return EllipseOutline(ellipse);
+PowerEllipseOutline outline(const PowerEllipseSection& section) {
+  return PowerEllipseOutline(section);
+}
+CappedLensOutline outline(const CappedLensSection& section) {
+  return CappedLensOutline(section);
 }
 
 // Surface of one tow piece: two faces S(u, v), by u along the tow and v across it, and two cuts.
@@ -145,8 +184,8 @@ class TowSurface {
   TowSurface(const UnitCell& cell, const TowPiece& tow, const SectionOutline& section)
       : centre_(cell, tow),
         section_(section),
-        pitch_(cell.pitch),
-        middle_(tow.index * cell.pitch),
+        pitch_(other_family(cell, tow).spacing),
+        middle_(tow.index * family(cell, tow).spacing),
         warp_(tow.direction == TowDirection::warp),
         sin_(std::sin(cell.shear_angle)),
         cos_(std::cos(cell.shear_angle)) {
@@ -267,7 +306,7 @@ class TowSurface {
 template <class Use>
 auto with_surface(const UnitCell& cell, const TowPiece& tow, const Use& use) {
   return std::visit([&](const auto& section) { return use(TowSurface(cell, tow, outline(section))); },
-                    cell.section);
+                    family(cell, tow).section);
 }
 
 int crossings(const UnitCell& cell, const TowPiece& tow) {
@@ -290,15 +329,17 @@ double tow_distance(const UnitCell& cell, const TowPiece& tow, const std::array<
 }
 
 LevelSet tow_level_set(const UnitCell& cell, const TowPiece& tow, double voxel, double half_width_voxels) {
-  const double thickness = 2.0 * half_height(cell.section, 0.0);
+  const UnitCell::Tow& own = family(cell, tow);
+  const double thickness = 2.0 * half_height(own.section, 0.0);
   if (!(voxel > 0.0) || voxel > 0.2 * thickness)
     throw InputError(
         {{"level_set.voxel.range"_rule, "voxel", fmt::format("{} mm", 1e3 * voxel),
           fmt::format("must satisfy 0 < voxel <= a fifth of the tow thickness, {} mm", 0.2e3 * thickness),
           "Write 0.05 mm for the tow of Table 1."}});
-  const double start = -0.5 * cell.pitch, end = start + crossings(cell, tow) * cell.pitch;
-  const double side = 0.5 * width(cell.section), middle = tow.index * cell.pitch;
-  const double top = 0.5 * (cell.crimp_height() + thickness);
+  const double pitch = other_family(cell, tow).spacing;
+  const double start = -0.5 * pitch, end = start + crossings(cell, tow) * pitch;
+  const double side = 0.5 * width(own.section), middle = tow.index * own.spacing;
+  const double top = 0.5 * (height(own.path) + thickness);
   Box box{{1e300, 1e300, -top}, {-1e300, -1e300, top}};
   for (const double along : {start, end})
     for (const double across : {middle - side, middle + side}) {
@@ -322,13 +363,13 @@ LevelSetCheck level_set_check(const UnitCell& cell, double voxel) {
   LevelSetCheck check;
   check.voxel = voxel;
   check.tows = tow_pieces(cell);
-  const double one_pitch = area(cell.section) * cell.pitch * std::cos(cell.shear_angle);
-  check.closed_form_volume = one_pitch * cell.weave.wefts;
   std::vector<LevelSet> sets;
   for (const TowPiece& tow : check.tows) {
     sets.push_back(tow_level_set(cell, tow, voxel));
     check.tow_volume.push_back(volume(sets.back()));
-    check.closed_form_total += one_pitch * crossings(cell, tow);
+    check.closed_form_volume.push_back(area(family(cell, tow).section) * other_family(cell, tow).spacing *
+                                       std::cos(cell.shear_angle) * crossings(cell, tow));
+    check.closed_form_total += check.closed_form_volume.back();
     check.memory += sets.back().memory();
   }
   check.largest_depth = -std::numeric_limits<double>::infinity();
@@ -344,13 +385,21 @@ LevelSetCheck level_set_check(const UnitCell& cell, double voxel) {
 }
 
 TowBodies tow_bodies(const UnitCell& cell) {
-  const LevelSetCheck check = level_set_check(cell, 2.0 * half_height(cell.section, 0.0) / 7.5);
-  TowBodies bodies{check.voxel, 0.0, check.overlap_share, check.largest_depth};
-  const double one_crossing = check.closed_form_volume / cell.weave.wefts;
-  for (std::size_t k = 0; k < check.tows.size(); ++k) {
-    const double closed_form = one_crossing * crossings(cell, check.tows[k]);
-    bodies.volume_error = std::max(bodies.volume_error, std::abs(check.tow_volume[k] / closed_form - 1.0));
-  }
+  const double thinnest =
+      2.0 * std::min(half_height(cell.tow[0].section, 0.0), half_height(cell.tow[1].section, 0.0));
+  const LevelSetCheck check = level_set_check(cell, thinnest / 7.5);
+  const Penetration heights = penetration(cell, 64);
+  // Heights of 1e-3 m are rounded to 1e-19 m: below 1e-15 m tows touch and no more.
+  const bool touch = std::abs(heights.depth) < 1e-15;
+  TowBodies bodies{check.voxel,
+                   0.0,
+                   check.overlap_share,
+                   check.largest_depth,
+                   touch ? 0.0 : heights.depth,
+                   touch ? 0.0 : heights.volume};
+  for (std::size_t k = 0; k < check.tows.size(); ++k)
+    bodies.volume_error =
+        std::max(bodies.volume_error, std::abs(check.tow_volume[k] / check.closed_form_volume[k] - 1.0));
   return bodies;
 }
 

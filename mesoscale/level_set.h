@@ -35,26 +35,29 @@ LevelSet tow_level_set(const UnitCell& cell, const TowPiece& tow, double voxel,
 
 /// What the level sets of all tows of one repeat say about the closed forms.
 struct LevelSetCheck {
-  double voxel = 0.0;               ///< [m]
-  std::vector<TowPiece> tows;       ///< warps, then wefts
-  std::vector<double> tow_volume;   ///< by level set [m^3], as tows
-  double closed_form_volume = 0.0;  ///< of one tow of the repeat along warp: area x pitch x crossings x cos g
-  double closed_form_total = 0.0;   ///< of all tows [m^3]
-  double overlap_volume = 0.0;      ///< voxels inside a warp and a weft [m^3 per repeat]
-  double overlap_share = 0.0;       ///< overlap_volume over closed_form_total [-]
-  double largest_depth = 0.0;       ///< how deep a voxel lies in two tows; <= 0: apart [m]
-  std::size_t memory = 0;           ///< of all level sets [byte]
+  double voxel = 0.0;                      ///< [m]
+  std::vector<TowPiece> tows;              ///< warps, then wefts
+  std::vector<double> tow_volume;          ///< by level set [m^3], as tows
+  std::vector<double> closed_form_volume;  ///< of each: area x pitch x crossings x cos g [m^3]
+  double closed_form_total = 0.0;          ///< of all tows [m^3]
+  double overlap_volume = 0.0;             ///< voxels inside a warp and a weft [m^3 per repeat]
+  double overlap_share = 0.0;              ///< overlap_volume over closed_form_total [-]
+  double largest_depth = 0.0;              ///< how deep a voxel lies in two tows; <= 0: apart [m]
+  std::size_t memory = 0;                  ///< of all level sets [byte]
 };
 LevelSetCheck level_set_check(const UnitCell& cell, double voxel);
 
-/// The check in four numbers, as every run states it.
+/// The check in six numbers, as every run states it.
 struct TowBodies {
   double voxel = 0.0;          ///< [m]
   double volume_error = 0.0;   ///< largest over the tows, of section area times length [-]
   double overlap_share = 0.0;  ///< of the tow volume, in voxels inside a warp and a weft [-]
   double overlap_depth = 0.0;  ///< how deep a voxel lies in both; < 0: how far they stay apart [m]
+  double height_depth =
+      0.0;  ///< overlap in z by the closed forms, on 64 x 64 places a crossing; 0 = they touch [m]
+  double height_volume = 0.0;  ///< the same, summed [m^3 per repeat]
 };
-/// With voxels of 2/15 of the tow thickness.
+/// With voxels of 2/15 of the thickness of the thinner tow.
 TowBodies tow_bodies(const UnitCell& cell);
 
 }  // namespace heddle::mesoscale

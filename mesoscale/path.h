@@ -28,6 +28,8 @@ struct ArcPath {
   double slope(double u) const;       ///< d drop / du [-]
   double reach(double depth) const;   ///< u in [0, p/2] at which the path has fallen by depth in [0, h/2] [m]
   double mean_square_height() const;  ///< mean of z^2 along the fabric about the mid-plane [m^2]
+
+  bool operator==(const ArcPath&) const = default;
 };
 
 /// Radius at which the arcs meet without a straight part [m].

@@ -31,15 +31,15 @@ class TubeBuilder {
   bool is_warp() const { return direction_ == TowDirection::warp; }
 
   std::array<double, 3> vertex(int station, int k) const {
-    const int tows = is_warp() ? cell_.weave.wefts : cell_.weave.warps;
-    const double along = tows * cell_.pitch * station / stations_;
+    const double along = cell_.size()[is_warp() ? 0 : 1] * station / stations_;
     const bool upper = k <= across_;
     const int strip = upper ? k : ring() - k;
     // Even in the angle, so that strips are narrow where the section is thin.
-    const double across = -0.5 * width(cell_.section) * std::cos(std::acos(-1.0) * strip / across_);
-    const double half = strip == 0 || strip == across_ ? 0.0 : half_height(cell_.section, across);
+    const UnitCell::Tow& tow = cell_.tow[is_warp() ? 0 : 1];
+    const double across = -0.5 * width(tow.section) * std::cos(std::acos(-1.0) * strip / across_);
+    const double half = strip == 0 || strip == across_ ? 0.0 : half_height(tow.section, across);
     const double centre = is_warp() ? warp_centre(cell_, index_, along) : weft_centre(cell_, index_, along);
-    const double side = index_ * cell_.pitch + across;
+    const double side = index_ * tow.spacing + across;
     const std::array<double, 2> at = is_warp() ? cell_.place(along, side) : cell_.place(side, along);
     return {at[0], at[1], centre + (upper ? half : -half)};
   }
@@ -70,13 +70,13 @@ class TubeBuilder {
 Outline warp_band(const UnitCell& cell, int warp, int points_per_pitch) {
   Outline band{TowDirection::warp, {}};
   const int steps = points_per_pitch * cell.weave.wefts;
-  const double half = half_height(cell.section, 0.0);
+  const double half = half_height(cell.tow[0].section, 0.0), pitch = cell.tow[1].spacing;
   for (int k = 0; k <= steps; ++k) {
-    const double along = cell.pitch * k / points_per_pitch;
+    const double along = pitch * k / points_per_pitch;
     band.points.push_back({along, warp_centre(cell, warp, along) + half});
   }
   for (int k = steps; k >= 0; --k) {
-    const double along = cell.pitch * k / points_per_pitch;
+    const double along = pitch * k / points_per_pitch;
     band.points.push_back({along, warp_centre(cell, warp, along) - half});
   }
   return band;
@@ -84,13 +84,14 @@ Outline warp_band(const UnitCell& cell, int warp, int points_per_pitch) {
 
 Outline weft_section(const UnitCell& cell, int warp, int weft, int points_per_pitch) {
   Outline section{TowDirection::weft, {}};
-  const double w = width(cell.section), centre = weft_centre(cell, weft, warp * cell.pitch);
+  const Section& shape = cell.tow[1].section;
+  const double w = width(shape), centre = weft_centre(cell, weft, warp * cell.tow[0].spacing);
   for (int k = 0; k < 2 * points_per_pitch; ++k) {
     const bool upper = k < points_per_pitch;
     const double share = static_cast<double>(upper ? k : 2 * points_per_pitch - k) / points_per_pitch;
     const double across = w * (share - 0.5);
-    const double half = half_height(cell.section, across);
-    section.points.push_back({weft * cell.pitch + across, centre + (upper ? half : -half)});
+    const double half = half_height(shape, across);
+    section.points.push_back({weft * cell.tow[1].spacing + across, centre + (upper ? half : -half)});
   }
   return section;
 }
@@ -100,9 +101,9 @@ Outline weft_section(const UnitCell& cell, int warp, int weft, int points_per_pi
 VoxelLabels tow_labels(const UnitCell& cell, int per_pitch, int through) {
   VoxelLabels voxels;
   const int warps = cell.weave.warps;
-  const double thickness = 2.0 * half_height(cell.section, 0.0) + cell.crimp_height();
+  const double thickness = 2.0 * cell.crown();
   voxels.count = {per_pitch * cell.weave.wefts, per_pitch * warps, through};
-  voxels.spacing = {cell.pitch / per_pitch, cell.pitch / per_pitch, thickness / through};
+  voxels.spacing = {cell.tow[1].spacing / per_pitch, cell.tow[0].spacing / per_pitch, thickness / through};
   voxels.origin = {0.0, 0.0, -0.5 * thickness};
   const auto [nx, ny, nz] = voxels.count;
   voxels.labels.assign(static_cast<std::size_t>(nx) * ny * nz, 0);
@@ -117,8 +118,8 @@ VoxelLabels tow_labels(const UnitCell& cell, int per_pitch, int through) {
     for (int i = 0; i < nx; ++i) {
       const double xi = (i + 0.5) * voxels.spacing[0], eta = (j + 0.5) * voxels.spacing[1];
       const Column c = column(cell, xi, eta);
-      const int warp = static_cast<int>(std::lround(eta / cell.pitch)) % warps;
-      const int weft = static_cast<int>(std::lround(xi / cell.pitch)) % cell.weave.wefts;
+      const int warp = static_cast<int>(std::lround(eta / cell.tow[0].spacing)) % warps;
+      const int weft = static_cast<int>(std::lround(xi / cell.tow[1].spacing)) % cell.weave.wefts;
       if (c.warp) fill(i, j, c.warp_bottom, c.warp_top, 1 + warp);
       if (c.weft) fill(i, j, c.weft_bottom, c.weft_top, 1 + warps + weft);
     }

@@ -5,8 +5,30 @@
 #include <numbers>
 
 #include "mesoscale/quadrature.h"
+#include "mesoscale/root.h"
 
 namespace heddle::mesoscale {
+
+namespace {
+
+// Fall of a circle from its crown; = R - sqrt(R^2 - y^2) without the cancellation near the crown.
+double circle_drop(double r, double y) {
+  const double root = std::sqrt(std::max(r * r - y * y, 0.0));
+  return y * y / (r + root);
+}
+
+// Integral of (1 - x^2)^(n/2) over [0, 1].
+double power_integral(double n) {
+  return 0.5 * std::sqrt(std::numbers::pi) *
+         std::exp(std::lgamma(0.5 * n + 1.0) - std::lgamma(0.5 * n + 1.5));
+}
+
+// Of x in [0, 1], for half heights that are a power of it.
+double beyond(double x) {
+  return std::max(1.0 - x * x, 0.0);
+}
+
+}  // namespace
 
 double LensSection::radius() const {
   return (width * width + thickness * thickness) / (4.0 * thickness);
@@ -19,9 +41,7 @@ double LensSection::area() const {
 }
 
 double LensSection::drop(double y) const {
-  const double r = radius();
-  const double root = std::sqrt(std::max(r * r - y * y, 0.0));
-  return y * y / (r + root);  // = r - root without the cancellation near the crown
+  return circle_drop(radius(), y);
 }
 
 double LensSection::half_height(double y) const {
@@ -49,31 +69,142 @@ double LensSection::mean_square_height() const {
   return moment / area();
 }
 
-double EllipseSection::area() const {
-  return 0.25 * std::numbers::pi * width * thickness;
+double PowerEllipseSection::crown_radius() const {
+  return width * width / (2.0 * power * thickness);
 }
 
-double EllipseSection::half_height(double y) const {
-  const double u = 2.0 * y / width;
-  return 0.5 * thickness * std::sqrt(std::max(1.0 - u * u, 0.0));
+double PowerEllipseSection::area() const {
+  return width * thickness * power_integral(power);
 }
 
-double EllipseSection::slope(double y) const {
-  const double u = 2.0 * y / width;
-  if (std::abs(u) >= 1.0) return 0.0;
-  return -thickness / width * u / std::sqrt(1.0 - u * u);
+double PowerEllipseSection::half_height(double y) const {
+  return 0.5 * thickness * std::pow(beyond(2.0 * y / width), 0.5 * power);
 }
 
-double half_height(const Section& section, double y) {
-  return std::visit([y](const auto& s) { return s.half_height(y); }, section);
+double PowerEllipseSection::slope(double y) const {
+  const double x = 2.0 * y / width;
+  if (std::abs(x) >= 1.0) return 0.0;
+  return -thickness / width * power * x * std::pow(beyond(x), 0.5 * power - 1.0);
+}
+
+double PowerEllipseSection::drop(double y) const {
+  const double x = 2.0 * y / width;
+  if (std::abs(x) >= 1.0) return 0.5 * thickness;
+  return -0.5 * thickness * std::expm1(0.5 * power * std::log1p(-x * x));  // no cancellation near the crown
+}
+
+double PowerEllipseSection::reach(double depth) const {
+  if (depth <= 0.0) return 0.0;
+  if (depth >= 0.5 * thickness) return 0.5 * width;
+  return 0.5 * width * std::sqrt(-std::expm1(2.0 / power * std::log1p(-2.0 * depth / thickness)));
+}
+
+double PowerEllipseSection::mean_square_height() const {
+  return thickness * thickness / 12.0 * power_integral(3.0 * power) / power_integral(power);
+}
+
+CappedLensSection capped_lens(double width, double thickness, double cap_share) {
+  const double cap = 0.5 * width * cap_share, flank = 0.5 * width - cap;
+  const auto excess = [&](double a) {
+    return cap * std::tan(0.5 * a) + flank * std::tan(a) - 0.5 * thickness;
+  };
+  // Between the straight flank of a rhombus and the edge of the lens.
+  const double low = std::atan(thickness / width), high = 2.0 * low;
+  const double at_low = std::min(excess(low), 0.0), at_high = std::max(excess(high), 0.0);
+  return {width, thickness, cap, bracketed_root(low, at_low, high, at_high, 1e-16 * thickness, excess)};
+}
+
+double CappedLensSection::radius() const {
+  return cap / std::sin(angle);
+}
+
+double CappedLensSection::drop(double y) const {
+  const double from_middle = std::abs(y);
+  if (from_middle <= cap && cap > 0.0) return circle_drop(radius(), y);
+  return 0.5 * thickness - std::max(0.5 * width - from_middle, 0.0) * std::tan(angle);
+}
+
+double CappedLensSection::half_height(double y) const {
+  if (std::abs(y) >= 0.5 * width) return 0.0;
+  return 0.5 * thickness - drop(y);
+}
+
+double CappedLensSection::slope(double y) const {
+  if (std::abs(y) >= 0.5 * width) return 0.0;
+  if (std::abs(y) > cap) return y > 0.0 ? -std::tan(angle) : std::tan(angle);
+  const double r = radius();
+  return -y / std::sqrt(r * r - y * y);
+}
+
+double CappedLensSection::reach(double depth) const {
+  if (depth <= 0.0) return 0.0;
+  if (depth >= 0.5 * thickness) return 0.5 * width;
+  if (depth <= cap * std::tan(0.5 * angle)) return std::sqrt(depth * (2.0 * radius() - depth));
+  return 0.5 * width - (0.5 * thickness - depth) / std::tan(angle);
+}
+
+double CappedLensSection::area() const {
+  const double r = radius(), flank = 0.5 * width - cap;
+  // Segment of the circle above its chord, the rectangle below the chord, the two triangles; twice.
+  const double segment = r * r * (angle - 0.5 * std::sin(2.0 * angle));
+  const double chord = flank * std::tan(angle);
+  return 2.0 * (segment + 2.0 * cap * chord + flank * chord);
+}
+
+double CappedLensSection::mean_square_height() const {
+  const auto cube = [&](double y) {
+    const double f = half_height(y);
+    return 4.0 / 3.0 * f * f * f;
+  };
+  return (integrate(0.0, cap, 8, cube) + integrate(cap, 0.5 * width, 2, cube)) / area();
+}
+
+double width(const Section& section) {
+  return std::visit([](const auto& s) { return s.width; }, section);
+}
+
+double thickness(const Section& section) {
+  return std::visit([](const auto& s) { return s.thickness; }, section);
+}
+
+double crown_radius(const Section& section) {
+  return std::visit([](const auto& s) { return s.crown_radius(); }, section);
 }
 
 double area(const Section& section) {
   return std::visit([](const auto& s) { return s.area(); }, section);
 }
 
-double width(const Section& section) {
-  return std::visit([](const auto& s) { return s.width; }, section);
+double half_height(const Section& section, double y) {
+  return std::visit([y](const auto& s) { return s.half_height(y); }, section);
+}
+
+double slope(const Section& section, double y) {
+  return std::visit([y](const auto& s) { return s.slope(y); }, section);
+}
+
+double drop(const Section& section, double y) {
+  return std::visit([y](const auto& s) { return s.drop(y); }, section);
+}
+
+double reach(const Section& section, double depth) {
+  return std::visit([depth](const auto& s) { return s.reach(depth); }, section);
+}
+
+double mean_square_height(const Section& section) {
+  return std::visit([](const auto& s) { return s.mean_square_height(); }, section);
+}
+
+double enclosing_radius(const Section& section) {
+  return LensSection{width(section), thickness(section)}.radius();
+}
+
+Section resized(const Section& section, double width, double thickness) {
+  if (const auto* power = std::get_if<PowerEllipseSection>(&section))
+    return PowerEllipseSection{width, thickness, power->power};
+  if (const auto* capped = std::get_if<CappedLensSection>(&section))
+    return capped_lens(width, thickness, capped->cap / (0.5 * capped->width));
+  return LensSection{width, thickness};
 }
 
 }  // namespace heddle::mesoscale

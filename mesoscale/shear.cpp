@@ -16,39 +16,23 @@ namespace {
 
 constexpr double gas_constant = 8.314462618;  // [J/(mol K)]
 
-double mean_interlacing(const TensionModel& model) {
-  return 0.5 * (model.interlacing[0] + model.interlacing[1]);
-}
-
-// The unsheared length law with the contact radius and edge of the sheared crossing.
-LengthLaw length_law(const ShearModel& model, double shear_angle) {
+// The tows of the unsheared fabric with the contact radius and edge of the sheared crossing.
+std::array<TensionTow, 2> sheared_tows(const ShearModel& model, double shear_angle) {
   const CrossingGeometry crossing = sheared(model.fabric.crossing, shear_angle);
-  LengthLaw law = model.tension.length;
-  law.contact_radius = crossing.section.radius() + 0.5 * crossing.section.thickness;
-  law.edge = std::min(0.5 * crossing.section.width, 0.475 * crossing.pitch);
-  return law;
+  std::array<TensionTow, 2> tows = model.tension.tow;
+  for (std::size_t i = 0; i < 2; ++i)
+    tows[i].length = length_law(crossing.tow[i], crossing.tow[1 - i], tows[i].length.form);
+  return tows;
 }
 
-struct TowState {
-  double energy;         ///< per pitch of tow [J]
-  double force;          ///< N [N]
-  double along, upward;  ///< d length / d p and d length / d h, floats included [-]
-};
-
-TowState tow_state(const TensionModel& model, const LengthLaw& law, double strain, double height) {
-  const double share = mean_interlacing(model), pitch = model.pitch * (1.0 + strain);
-  const PathLength path = law.evaluate(pitch, height);
-  const double rest = 0.5 * (model.rest_length(0) + model.rest_length(1));
-  const TowStretch::Value tow =
-      model.stretch.evaluate((share * path.length + (1.0 - share) * pitch) / rest - 1.0);
-  return {rest * tow.energy, tow.force, share * path.dl_dp + 1.0 - share, share * path.dl_dh};
+CrossoverContact contact_at(const ShearModel& model, double shear_angle) {
+  return {model.fabric.crossing, shear_angle, model.law, float_shares(model.fabric.quarters)};
 }
 
 // Strain at which a tow of this crimp height carries the tension.
-double strain_under(const TensionModel& model, const LengthLaw& law, double tension, double height) {
+double strain_under(const TensionTow& tow, double tension, double height) {
   const auto excess = [&](double strain) {
-    const TowState tow = tow_state(model, law, strain, height);
-    return tow.force * tow.along / model.pitch - tension;
+    return tow.evaluate(strain, height).fabric_force / tow.spacing - tension;
   };
   const double low = -0.2, high = 0.2;
   const double at_low = excess(low), at_high = excess(high);
@@ -57,14 +41,58 @@ double strain_under(const TensionModel& model, const LengthLaw& law, double tens
   return bracketed_root(low, at_low, high, at_high, 1e-12 * tension, excess);
 }
 
-double potential_of(const ShearModel& model, const LengthLaw& length, const CrossoverContact& contact,
-                    double strain, double height) {
-  const TowState tow = tow_state(model.tension, length, strain, height);
-  const double off = height - model.tension.rest_height;
-  const double stored =
-      2.0 * tow.energy + model.tension.crimp_stiffness * off * off + contact.evaluate(-2.0 * off).energy;
-  return stored / (model.tension.pitch * model.tension.pitch) - 2.0 * model.reference_tension * strain;
+double potential_of(const ShearModel& model, const std::array<TensionTow, 2>& tows,
+                    const CrossoverContact& contact, const std::array<double, 2>& strain,
+                    const std::array<double, 2>& height) {
+  const TensionTow::State warp = tows[0].evaluate(strain[0], height[0]),
+                          weft = tows[1].evaluate(strain[1], height[1]);
+  const double approach = (tows[0].rest_height - height[0]) + (tows[1].rest_height - height[1]);
+  const double stored = (warp.energy + weft.energy) + (warp.bending_energy + weft.bending_energy) +
+                        contact.evaluate(approach).energy;
+  return stored / model.tension.area() - model.reference_tension * (strain[0] + strain[1]);
 }
+
+// Two tows that carry the tension and press on each other.
+class LoadedPair {
+ public:
+  LoadedPair(const std::array<TensionTow, 2>& tows, double tension)
+      : tows_(tows), tension_(tension), small_(tension * 0.5 * (tows[0].spacing + tows[1].spacing)) {}
+
+  double force_scale() const { return small_; }
+
+  // Heights of a mean of which each tow lifts equally: one root more, which is known where the tows are
+  // alike.
+  std::array<double, 2> heights(double mean) const {
+    const double start = 0.5 * (tows_[0].rest_height - tows_[1].rest_height);
+    const auto excess = [&](double off) { return lift(0, mean + off) - lift(1, mean - off); };
+    const double at_start = excess(start);
+    double off = start;
+    if (at_start != 0.0) {
+      const double way = at_start < 0.0 ? 1.0 : -1.0;
+      double reach = 0.1 * (tows_[0].rest_height + tows_[1].rest_height);
+      double far = start + way * reach, at_far = excess(far);
+      for (int k = 0; k < 5 && !(way * at_far > 0.0); ++k) {
+        reach *= 2.0;
+        far = start + way * reach;
+        at_far = excess(far);
+      }
+      if (!(way * at_far > 0.0))
+        throw NumericalError(fmt::format("shear: no crimp heights of mean {:.4g} m balance", mean));
+      off = at_start < 0.0 ? bracketed_root(start, at_start, far, at_far, 1e-12 * small_, excess)
+                           : bracketed_root(far, at_far, start, at_start, 1e-12 * small_, excess);
+    }
+    return {mean + off, mean - off};
+  }
+
+  double lift(std::size_t i, double height) const {
+    return tows_[i].evaluate(strain(i, height), height).lift;
+  }
+  double strain(std::size_t i, double height) const { return strain_under(tows_[i], tension_, height); }
+
+ private:
+  const std::array<TensionTow, 2>& tows_;
+  double tension_, small_;
+};
 
 // How much narrower than free a tow has become, and how fast it does so.
 struct Narrowing {
@@ -72,34 +100,52 @@ struct Narrowing {
   double slope;  ///< its slope in g [m/rad]
 };
 
-Narrowing narrowing(const ShearModel& model, double shear_angle) {
-  const OpenWidth open = oblique_width(model.fabric.crossing, shear_angle);
+Narrowing narrowing(const TowGeometry& unsheared, double shear_angle) {
+  const OpenWidth open = oblique_width(unsheared, shear_angle);
   const double c = std::cos(shear_angle), s = std::sin(shear_angle);
-  return {model.fabric.crossing.section.width - open.width * c, open.width * s - open.slope * c};
+  return {width(unsheared.section) - open.width * c, open.width * s - open.slope * c};
 }
 
 // The tow seen from its side: squeezed across its width.
-TowSqueeze side_squeeze(const ShearModel& model) {
-  return {model.law, model.fabric.crossing.section.width, model.fabric.crossing.fibre_fraction};
+TowSqueeze side_squeeze(const ShearModel& model, const TowGeometry& tow) {
+  return {model.law, width(tow.section), tow.fibre_fraction};
+}
+
+// Mean over the angle of (rho / sqrt(a b))^power, rho the radius of an ellipse of half axes a and b.
+double mean_power_of_ellipse(double a, double b, double power) {
+  if (a == b) return 1.0;
+  constexpr int n = 64;  // the trapezium rule of a periodic function
+  double sum = 0.0;
+  for (int k = 0; k < n; ++k) {
+    const double angle = 0.5 * std::numbers::pi * (k + 0.5) / n;
+    sum += std::pow(std::sqrt(a * b) / std::hypot(b * std::cos(angle), a * std::sin(angle)), power);
+  }
+  return sum / n;
+}
+
+// Half the length of the contact along a tow.
+double contact_reach(const CrossingGeometry& crossing, std::size_t tow, bool floats, double film) {
+  const double wrap = crossing.tow[tow].path.wrap();
+  return floats ? std::min(wrap, reach(crossing.tow[1 - tow].section, film)) : wrap;
 }
 
 }  // namespace
 
-double ShearModel::potential(double shear_angle, double strain, double height) const {
-  return potential_of(*this, length_law(*this, shear_angle),
-                      CrossoverContact(fabric.crossing, shear_angle, law), strain, height);
+double ShearModel::potential(double shear_angle, const std::array<double, 2>& strain,
+                             const std::array<double, 2>& height) const {
+  return potential_of(*this, sheared_tows(*this, shear_angle), contact_at(*this, shear_angle), strain,
+                      height);
 }
 
 LoadedCrossing ShearModel::loaded(double shear_angle) const {
-  const CrossoverContact contact(fabric.crossing, shear_angle, law);
-  const LengthLaw length = length_law(*this, shear_angle);
-  const double rest = tension.rest_height;
+  const CrossoverContact contact = contact_at(*this, shear_angle);
+  const std::array<TensionTow, 2> tows = sheared_tows(*this, shear_angle);
+  const LoadedPair pair(tows, reference_tension);
+  const double rest = 0.5 * (tows[0].rest_height + tows[1].rest_height);
   // Vertical balance N sin th = V/2 per tow, with the tow's bending: increases with h.
-  const auto lift = [&](double height) {
-    const double strain = strain_under(tension, length, reference_tension, height);
-    const TowState tow = tow_state(tension, length, strain, height);
-    return tow.force * tow.upward + tension.crimp_stiffness * (height - rest) -
-           contact.force(2.0 * (rest - height));
+  const auto lift = [&](double mean) {
+    const std::array<double, 2> height = pair.heights(mean);
+    return 0.5 * (pair.lift(0, height[0]) + pair.lift(1, height[1])) - contact.force(2.0 * (rest - mean));
   };
   const double low = rest - 0.5 * contact.approach_at(1.2), high = 1.2 * rest;
   const double at_low = lift(low), at_high = lift(high);
@@ -107,30 +153,35 @@ LoadedCrossing ShearModel::loaded(double shear_angle) const {
     throw NumericalError(
         fmt::format("shear: {:.4g} N/m cannot be balanced at {:.4g} rad", reference_tension, shear_angle));
   LoadedCrossing state;
-  state.height = bracketed_root(low, at_low, high, at_high, 1e-11 * reference_tension * tension.pitch, lift);
-  state.strain = strain_under(tension, length, reference_tension, state.height);
-  const double approach = 2.0 * (rest - state.height);
+  const double mean = bracketed_root(low, at_low, high, at_high, 1e-11 * pair.force_scale(), lift);
+  state.height = pair.heights(mean);
+  for (std::size_t i = 0; i < 2; ++i) state.strain[i] = pair.strain(i, state.height[i]);
+  const double approach = 2.0 * (rest - mean);
   state.crossover_force = contact.force(approach);
   state.friction_arm = contact.arm(approach);
-  state.potential = potential_of(*this, length, contact, state.strain, state.height);
+  state.potential = potential_of(*this, tows, contact, state.strain, state.height);
   return state;
 }
 
 double ShearModel::lateral_energy(double shear_angle) const {
-  return 2.0 * fabric.crossing.section.thickness / fabric.crossing.pitch *
-         side_squeeze(*this).evaluate(narrowing(*this, shear_angle).by).energy;
+  double sum = 0.0;
+  for (const TowGeometry& tow : fabric.crossing.tow)
+    sum += thickness(tow.section) / tow.spacing *
+           side_squeeze(*this, tow).evaluate(narrowing(tow, shear_angle).by).energy;
+  return sum;
 }
 
 ShearFlow ShearModel::flow(double shear_angle) const {
-  const double pitch = fabric.crossing.pitch;
   const LoadedCrossing state = loaded(shear_angle);
   ShearFlow flow;
   const double ramp = shear_angle / std::hypot(shear_angle, ramp_angle);
-  flow.dry = ramp * tow_friction * state.crossover_force * state.friction_arm / (pitch * pitch);
+  flow.dry = ramp * tow_friction * state.crossover_force * state.friction_arm / fabric.crossing.area();
 
-  const Narrowing side = narrowing(*this, shear_angle);
-  flow.lateral =
-      2.0 * fabric.crossing.section.thickness / pitch * side_squeeze(*this).stress(side.by) * side.slope;
+  for (const TowGeometry& tow : fabric.crossing.tow) {
+    const Narrowing side = narrowing(tow, shear_angle);
+    flow.lateral +=
+        thickness(tow.section) / tow.spacing * side_squeeze(*this, tow).stress(side.by) * side.slope;
+  }
 
   // At the minimum only the geometry changes with g (envelope theorem), so strain and height are held.
   constexpr double step = 1e-5;  // [rad]: truncation 1e-10, rounding 1e-11 of the potential
@@ -142,10 +193,10 @@ ShearFlow ShearModel::flow(double shear_angle) const {
 
 SineGrid sine_grid(const FabricGeometry& fabric) {
   SineGrid grid;
-  const CrossingGeometry& crossing = fabric.crossing;
-  const double packed =
-      crossing.section.width / crossing.pitch * crossing.fibre_fraction / packed_fibre_fraction;
-  if (packed < 1.0) grid.highest = std::min(grid.highest, std::sqrt(1.0 - packed * packed));
+  for (const TowGeometry& tow : fabric.crossing.tow) {
+    const double packed = width(tow.section) / tow.spacing * tow.fibre_fraction / packed_fibre_fraction;
+    if (packed < 1.0) grid.highest = std::min(grid.highest, std::sqrt(1.0 - packed * packed));
+  }
   return grid;
 }
 
@@ -185,13 +236,23 @@ double locking_angle(const Curve& shear_stress, double multiple) {
 
 ShearRateParts shear_rate_parts(const FabricGeometry& fabric, const ResinSpec& resin, double in_tow_share) {
   const CrossingGeometry& crossing = fabric.crossing;
-  const double n = resin.power_index, disc = crossing.path.wrap();
+  const double n = resin.power_index;
+  const FloatShares floats = float_shares(fabric.quarters);
   ShearRateParts parts;
-  parts.film = resin.consistency / std::pow(resin.film_thickness, n) * 2.0 * std::numbers::pi *
-               std::pow(disc, n + 3.0) / ((n + 3.0) * crossing.pitch * crossing.pitch);
-  const double v = crossing.fibre_fraction, saturation = std::min(fabric.tow_solid_fraction, 1.0);
-  parts.in_tow = in_tow_share * 2.0 * crossing.section.area() / crossing.pitch * resin.consistency *
-                 saturation * (1.0 + v) / (1.0 - v);
+  for (const std::size_t warp : {0U, 1U})
+    for (const std::size_t weft : {0U, 1U}) {
+      const double a = contact_reach(crossing, 0, warp == 1, resin.film_thickness);
+      const double b = contact_reach(crossing, 1, weft == 1, resin.film_thickness);
+      parts.film += floats[warp][weft] * mean_power_of_ellipse(a, b, n + 3.0) * resin.consistency /
+                    std::pow(resin.film_thickness, n) * 2.0 * std::numbers::pi *
+                    std::pow(std::sqrt(a * b), n + 3.0) / ((n + 3.0) * crossing.area());
+    }
+  for (std::size_t i = 0; i < 2; ++i) {
+    const TowGeometry& tow = crossing.tow[i];
+    const double v = tow.fibre_fraction, saturation = std::min(fabric.tow_solid_fraction[i], 1.0);
+    parts.in_tow += in_tow_share * area(tow.section) / tow.spacing * resin.consistency * saturation *
+                    (1.0 + v) / (1.0 - v);
+  }
   return parts;
 }
 

@@ -1,5 +1,7 @@
 #pragma once
 
+#include <array>
+
 #include "core/curve.h"
 #include "mesoscale/cell_spec.h"
 #include "mesoscale/tension.h"
@@ -8,11 +10,11 @@ namespace heddle::mesoscale {
 
 /// A crossing that carries the reference tension at a trellis angle.
 struct LoadedCrossing {
-  double strain = 0.0;           ///< e of both directions [-]
-  double height = 0.0;           ///< h of both tows [m]
-  double crossover_force = 0.0;  ///< V [N]
-  double friction_arm = 0.0;     ///< mean distance of the pressure from the crossing's centre [m]
-  double potential = 0.0;        ///< stored energy less the work of the tension, per initial area [J/m^2]
+  std::array<double, 2> strain{};  ///< e {warp, weft} [-]
+  std::array<double, 2> height{};  ///< h [m]
+  double crossover_force = 0.0;    ///< V [N]
+  double friction_arm = 0.0;       ///< mean distance of the pressure from the crossing's centre [m]
+  double potential = 0.0;          ///< stored energy less the work of the tension, per initial area [J/m^2]
 };
 
 /// Rate-free shear flow by origin; power per initial area is T dg/dt [N/m].
@@ -25,12 +27,11 @@ struct ShearFlow {
 
 /// Shear resistance of the fabric at the reference tension n_ref in both directions.
 ///
-///     T_dry = ramp(g) mu_t V a / p^2,     ramp = g / sqrt(g^2 + g_0^2)
-///     T_lat = (2 t / p) [sigma(V0 w / W) - sigma(V0)] (-dW/dg),  W = w_o cos g: the work of narrowing two
-///     tows;
-///             once the gap is closed W = p cos g and T_lat = 2 t sin g [sigma(V0 cos g* / cos g) -
-///             sigma(V0)]
-///     cos g T_tension = dE/dg,   E(g) = min_{e, h} [F(e, h; g) / p^2 - 2 n_ref e]
+///     T_dry = ramp(g) mu_t V a / (p1 p2),     ramp = g / sqrt(g^2 + g_0^2)
+///     T_lat = sum_i (t / p) [sigma(V0 w / W) - sigma(V0)] (-dW/dg),  W = w_o cos g: the work of narrowing
+///             the tows of each direction; once its gap is closed W = p cos g and its part is
+///             t sin g [sigma(V0 cos g* / cos g) - sigma(V0)]
+///     cos g T_tension = dE/dg,   E(g) = min_{e, h} [F(e, h; g) / (p1 p2) - n_ref (e1 + e2)]
 ///
 /// V and a (arm of the pressure) come from the crossing under n_ref at that angle; the radius of the path is
 /// held at its unsheared value. The ramp is friction taken as elastic over the first degree: a potential has
@@ -43,8 +44,9 @@ struct ShearModel {
   double tow_friction = 0.2;               ///< mu_t [-]
   double ramp_angle = 0.0174532925199433;  ///< g_0 [rad], one degree: prior
 
-  /// F / p^2 - 2 n_ref e at given strain and crimp height, both directions alike [J/m^2].
-  double potential(double shear_angle, double strain, double height) const;
+  /// F / (p1 p2) - n_ref (e1 + e2) at given strains and crimp heights {warp, weft} [J/m^2].
+  double potential(double shear_angle, const std::array<double, 2>& strain,
+                   const std::array<double, 2>& height) const;
   /// @throws NumericalError  if the tension cannot be balanced
   LoadedCrossing loaded(double shear_angle) const;
   /// U_lat per initial area, closed form; T_lat is its slope in g [J/m^2].
@@ -68,11 +70,13 @@ double locking_angle(const Curve& shear_stress, double multiple = 10.0);
 
 /// Rate-dependent part: film between turning tows and flow inside them, both power laws of the same index.
 ///
-///     m_s = (m / h_f^n) 2 pi a^(n+3) / ((n+3) p^2)  +  s_in 2 (A / p) m K,   K = saturation (1 + V0) / (1 -
-///     V0)
+///     m_s = (m / h_f^n) <2 pi a^(n+3)> / ((n+3) p1 p2)  +  s_in sum_i (A / p) m K
+///     K = saturation (1 + V0) / (1 - V0)
 ///
-/// The film covers the disc of the geometric contact, a = R' sin th; beyond, there is no resin to fill the
-/// gap. K: parallel fibres in a fluid (longitudinal shear), times the share of the tow that is not void.
+/// The film covers the geometric contact, with half axes R' sin th along a tow that changes sides, and as far
+/// as the section has fallen by h_f, at most that, along one that floats; beyond, there is no resin to fill
+/// the gap. <> is the mean over the kinds of quarter crossings, for an ellipse its mean over the angle.
+/// K: parallel fibres in a fluid (longitudinal shear), times the share of the tow that is not void.
 /// Taken at g = 0.
 struct ShearRateParts {
   double film = 0.0;    ///< [N s^n / m]

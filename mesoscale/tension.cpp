@@ -13,29 +13,8 @@ namespace heddle::mesoscale {
 
 namespace {
 
-// One tow at a given fabric strain and crimp height: energy, and slopes in the height.
-struct Tow {
-  double energy, slope, curvature;  ///< F, dF/dh, d2F/dh2 of one tow
-  double fabric_force;              ///< N cos th, averaged over changing and floating steps [N]
-};
-
-Tow tow_at(const TensionModel& model, int direction, double strain, double height) {
-  const double share = model.interlacing[static_cast<std::size_t>(direction)];
-  const double pitch = model.pitch * (1.0 + strain);
-  const PathLength path = model.length.evaluate(pitch, height);
-  const double rest = model.rest_length(direction);
-  const double length = share * path.length + (1.0 - share) * pitch;
-  const TowStretch::Value tow = model.stretch.evaluate(length / rest - 1.0);
-  const double dl_dh = share * path.dl_dh;
-  const double off = height - model.rest_height;
-  return {rest * tow.energy + 0.5 * model.crimp_stiffness * off * off,
-          tow.force * dl_dh + model.crimp_stiffness * off,
-          tow.stiffness / rest * dl_dh * dl_dh + tow.force * share * path.d2_hh + model.crimp_stiffness,
-          tow.force * (share * path.dl_dp + 1.0 - share)};
-}
-
 struct Trial {
-  std::array<Tow, 2> tow;
+  std::array<TensionTow::State, 2> tow;
   double energy;  ///< F [J]
   std::array<double, 2> slope;
   double contact_force, contact_stiffness;
@@ -43,9 +22,9 @@ struct Trial {
 
 Trial trial_at(const TensionModel& model, const std::array<double, 2>& strain,
                const std::array<double, 2>& height) {
-  Trial trial{
-      {tow_at(model, 0, strain[0], height[0]), tow_at(model, 1, strain[1], height[1])}, 0.0, {}, 0.0, 0.0};
-  const double approach = 2.0 * model.rest_height - height[0] - height[1];
+  const auto& [warp, weft] = model.tow;
+  Trial trial{{warp.evaluate(strain[0], height[0]), weft.evaluate(strain[1], height[1])}, 0.0, {}, 0.0, 0.0};
+  const double approach = warp.rest_height + weft.rest_height - height[0] - height[1];
   double contact_energy = 0.0;
   if (approach > 0.0) {
     const Curve::Value force = model.crossover_force.evaluate(approach);
@@ -53,15 +32,16 @@ Trial trial_at(const TensionModel& model, const std::array<double, 2>& strain,
     trial.contact_stiffness = force.slope;
     contact_energy = model.crossover_force.integral(approach);
   }
-  trial.energy = trial.tow[0].energy + trial.tow[1].energy + contact_energy;
-  trial.slope = {trial.tow[0].slope - trial.contact_force, trial.tow[1].slope - trial.contact_force};
+  const auto stored = [](const TensionTow::State& tow) { return tow.energy + tow.bending_energy; };
+  trial.energy = stored(trial.tow[0]) + stored(trial.tow[1]) + contact_energy;
+  trial.slope = {trial.tow[0].lift - trial.contact_force, trial.tow[1].lift - trial.contact_force};
   return trial;
 }
 
 std::array<double, 2> newton_step(const Trial& trial) {
-  const double a = trial.tow[0].curvature + trial.contact_stiffness;
+  const double a = trial.tow[0].lift_slope + trial.contact_stiffness;
   const double b = trial.contact_stiffness;
-  const double c = trial.tow[1].curvature + trial.contact_stiffness;
+  const double c = trial.tow[1].lift_slope + trial.contact_stiffness;
   const double det = a * c - b * b;
   return {-(c * trial.slope[0] - b * trial.slope[1]) / det, -(a * trial.slope[1] - b * trial.slope[0]) / det};
 }
@@ -69,11 +49,11 @@ std::array<double, 2> newton_step(const Trial& trial) {
 TensionModel::State state_of(const TensionModel& model, const std::array<double, 2>& strain,
                              const std::array<double, 2>& height, const Trial& trial, int iterations) {
   TensionModel::State state;
-  state.energy = trial.energy / (model.pitch * model.pitch);
+  state.energy = trial.energy / model.area();
   for (std::size_t i = 0; i < 2; ++i) {
-    const TowStretch::Value squash = model.compression.evaluate(-strain[i]);
+    const TowStretch::Value squash = model.tow[i].compression.evaluate(-strain[i]);
     state.energy += squash.energy;
-    state.tension[i] = trial.tow[i].fabric_force / model.pitch - squash.force;
+    state.tension[i] = trial.tow[i].fabric_force / model.tow[i].spacing - squash.force;
   }
   state.height = height;
   state.crossover_force = trial.contact_force;
@@ -111,24 +91,36 @@ TowStretch::Value TowStretch::evaluate(double strain) const {
   return {stiffness * (0.5 * taut * taut + 0.025 * range * range), stiffness * taut, stiffness};
 }
 
-double TensionModel::rest_length(int direction) const {
-  const double share = interlacing[static_cast<std::size_t>(direction)];
-  return share * length.evaluate(pitch, rest_height).length + (1.0 - share) * pitch;
+TensionTow::State TensionTow::evaluate(double strain, double height) const {
+  const double stretched = step * (1.0 + strain);
+  const PathLength path = length.evaluate(stretched, height);
+  const double mean = interlacing * path.length + (1.0 - interlacing) * stretched;
+  const TowStretch::Value tow = stretch.evaluate(mean / rest_length - 1.0);
+  const double dl_dh = interlacing * path.dl_dh;
+  const double off = height - rest_height;
+  return {
+      rest_length * tow.energy,
+      tow.force,
+      tow.force * (interlacing * path.dl_dp + 1.0 - interlacing),
+      tow.force * dl_dh + crimp_stiffness * off,
+      tow.stiffness / rest_length * dl_dh * dl_dh + tow.force * interlacing * path.d2_hh + crimp_stiffness,
+      0.5 * crimp_stiffness * off * off};
 }
 
 TensionModel::State TensionModel::relax(const std::array<double, 2>& strain) const {
-  return relax(strain, {rest_height, rest_height});
+  return relax(strain, {tow[0].rest_height, tow[1].rest_height});
 }
 
 TensionModel::State TensionModel::relax(const std::array<double, 2>& strain,
                                         std::array<double, 2> height) const {
   Trial now = trial_at(*this, strain, height);
+  const double thinner = std::min(tow[0].rest_height, tow[1].rest_height);
   constexpr int most = 200;  // convex, so Newton with a line search ends; the table needs 6 on average
   for (int iteration = 0; iteration < most; ++iteration) {
     const std::array<double, 2> step = newton_step(now);
     const double descent = now.slope[0] * step[0] + now.slope[1] * step[1];
     // The energy errs by the square of this step; rounding in EA eps moves h by 1e-11 of the thickness.
-    if (std::max(std::abs(step[0]), std::abs(step[1])) < 1e-9 * rest_height)
+    if (std::max(std::abs(step[0]), std::abs(step[1])) < 1e-9 * thinner)
       return state_of(*this, strain, height, now, iteration);
     double size = 1.0;
     for (;; size *= 0.5) {
@@ -148,24 +140,35 @@ TensionModel::State TensionModel::relax(const std::array<double, 2>& strain,
       fmt::format("tension: crimp heights not found at strains ({:.6g}, {:.6g})", strain[0], strain[1]));
 }
 
+LengthLaw length_law(const TowGeometry& own, const TowGeometry& other, PathForm form) {
+  // The edge stays 5 % short of p/2, where the straight leg of a gapless weave would vanish.
+  return {form, enclosing_radius(other.section) + 0.5 * thickness(own.section),
+          std::min(0.5 * width(other.section), 0.475 * other.spacing)};
+}
+
 TensionModel tension_model(const FabricGeometry& fabric, const CompactionLaw& law,
                            const TensionOptions& options) {
-  const CrossingGeometry& crossing = fabric.crossing;
-  const double pitch = crossing.pitch;
-  const double axial = options.fibre_modulus * fabric.mass.glass_area;
   TensionModel model;
-  model.pitch = pitch;
-  model.rest_height = crossing.section.thickness;
-  model.interlacing = fabric.interlacing;
-  // The edge stays 5 % short of p/2, where the straight leg of a gapless weave would vanish.
-  model.length = {options.form, crossing.section.radius() + 0.5 * crossing.section.thickness,
-                  std::min(0.5 * crossing.section.width, 0.475 * pitch)};
-  model.stretch.stiffness = axial;
-  model.compression.stiffness = options.compression_ratio * axial / pitch;
-  // A cosine of amplitude h/2 and half wave p, bending stiffness B p: energy B p (pi/p)^4 (h/2)^2 p / 4.
-  model.crimp_stiffness = options.bending_stiffness * std::pow(std::numbers::pi, 4) / (8.0 * pitch * pitch);
+  for (std::size_t i = 0; i < 2; ++i) {
+    const TowGeometry &own = fabric.crossing.tow[i], &other = fabric.crossing.tow[1 - i];
+    const double axial = options.fibre_modulus * fabric.mass.glass_area[i];
+    TensionTow& tow = model.tow[i];
+    tow.spacing = own.spacing;
+    tow.step = other.spacing;
+    tow.rest_height = own.path.height;
+    tow.interlacing = fabric.interlacing[i];
+    tow.length = length_law(own, other, options.form);
+    tow.rest_length = tow.interlacing * tow.length.evaluate(tow.step, tow.rest_height).length +
+                      (1.0 - tow.interlacing) * tow.step;
+    tow.stretch.stiffness = axial;
+    tow.compression.stiffness = options.compression_ratio * axial / tow.spacing;
+    // A cosine of amplitude h/2 and half wave p, bending stiffness B times the spacing: energy
+    // B spacing (pi/p)^4 (h/2)^2 p / 4.
+    tow.crimp_stiffness = options.bending_stiffness[i] * std::pow(std::numbers::pi, 4) /
+                          (8.0 * tow.step * tow.step) * (tow.spacing / tow.step);
+  }
 
-  const CrossoverContact contact(crossing, 0.0, law);
+  const CrossoverContact contact(fabric.crossing, 0.0, law, float_shares(fabric.quarters));
   const double deepest = contact.approach_at(0.85);  // beyond, the curve goes on straight, at some 1e8 N/m
   constexpr int points = 600;
   std::vector<double> approach(points), force(points);
@@ -184,7 +187,7 @@ Surface tabulate(const TensionModel& model, const StrainGrid& grid) {
   std::vector<double> energy(wide * wide);
   tbb::parallel_for(std::size_t{0}, wide, [&](std::size_t i) {
     // Each row starts afresh, so the bytes do not depend on which thread took it.
-    std::array<double, 2> height{model.rest_height, model.rest_height};
+    std::array<double, 2> height{model.tow[0].rest_height, model.tow[1].rest_height};
     for (std::size_t j = 0; j < wide; ++j) {
       const TensionModel::State state = model.relax({strain_at(i), strain_at(j)}, height);
       energy[i * wide + j] = state.energy;

@@ -5,6 +5,8 @@
 #include <string>
 #include <vector>
 
+#include "core/problem.h"
+
 namespace heddle::mesoscale {
 
 /// One repeat of a weave: which tow is on top at every crossing.
@@ -17,30 +19,53 @@ struct WeaveMatrix {
   bool warp_over(int warp, int weft) const;
 };
 
-/// plain: (i + j) mod 2; twill m/n: (i + j) mod (m + n) < m; satin N/k: i == k j mod N.
+/// plain: (i + j) mod 2; twill m/n: (i + s j) mod (m + n) < m; satin N/k: i == k j mod N; crowfoot, the satin
+/// of four: i == {0, 1, 3, 2}[j].
 WeaveMatrix plain_weave();
-WeaveMatrix twill_weave(int over, int under);
+WeaveMatrix twill_weave(int over, int under, int step = 1);
 WeaveMatrix satin_weave(int repeat, int step);
+WeaveMatrix crowfoot_weave();
+
+/// Most tows of a repeat each way: four times the satin of eight.
+inline constexpr int most_tows = 32;
 
 struct ParsedWeave {
   WeaveMatrix weave;
-  std::string fault;  ///< "" if the text names a weave; else the rule it breaks
+  std::string fault;         ///< "" if the text is a weave; else the rule it breaks
+  bool falls_apart = false;  ///< the text was understood, but what it says is no fabric
 };
-/// @param text  "plain", "twill m/n" or "satin N/k"
+/// @param text  "plain", "twill m/n", "twill m/n step s", "satin N/k", "crowfoot" or "matrix 110/011/101": a
+///              row a warp, a digit a weft, 1 where the warp is over. A matrix that repeats a smaller one is
+///              read as that.
 ParsedWeave parse_weave(const std::string& text);
+/// The fault of a text as problems of the key weave.pattern: none or one.
+Problems check_pattern(const std::string& text);
 
-/// First thing that keeps the matrix from being a fabric, or "". A tow that never changes sides is loose; and
-/// if a group of tows lies over all others everywhere, it lifts off (the "is over" graph is not strongly
-/// connected).
+/// First thing that keeps the matrix from being a fabric, with the tows that clash, or "". A tow that never
+/// changes sides is loose; and if a group of tows lies over all others everywhere, it lifts off (the "is
+/// over" graph is not strongly connected). Tows are counted from 1.
 std::string fault_of_weave(const WeaveMatrix& weave);
+
+/// The smallest repeat of the same weave along its own axes.
+WeaveMatrix smallest_repeat(const WeaveMatrix& weave);
+
+/// Whether warp and weft can be exchanged: the weave seen from its other diagonal, perhaps from below or in a
+/// mirror, is the same up to where the repeat starts.
+bool alike_both_ways(const WeaveMatrix& weave);
 
 /// Share of the steps between neighbouring crossings at which a tow changes sides, {warp, weft} [-];
 /// plain: 1.
 std::array<double, 2> interlacing(const WeaveMatrix& weave);
 
-/// Share of the quarter crossings whose {upper, lower} tow floats (keeps its side) towards the next crossing:
-/// weight[upper floats][lower floats]; the four add to 1.
-using QuarterShares = std::array<std::array<double, 2>, 2>;
+/// Share of the quarter crossings by which family is on top (0 = warp, 1 = weft) and whether the {upper,
+/// lower} tow floats (keeps its side) towards the next crossing: share[top][upper floats][lower floats]; all
+/// add to 1.
+using QuarterShares = std::array<std::array<std::array<double, 2>, 2>, 2>;
 QuarterShares quarter_shares(const WeaveMatrix& weave);
+
+/// The same whichever is on top: share[warp floats][weft floats].
+using FloatShares = std::array<std::array<double, 2>, 2>;
+inline constexpr FloatShares no_floats{{{1.0, 0.0}, {0.0, 0.0}}};
+FloatShares float_shares(const QuarterShares& quarters);
 
 }  // namespace heddle::mesoscale

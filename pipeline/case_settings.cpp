@@ -35,9 +35,26 @@ std::vector<std::array<double, columns>> rows(const Settings& settings, const st
   return result;
 }
 
+mesoscale::OwnTow own_tow_of(const Settings& settings, const std::string& block) {
+  const auto own = [&](const char* name) {
+    return settings.has(block + name) ? std::optional(settings.number(block + name)) : std::nullopt;
+  };
+  return {own("tow_width"), own("gap"), own("tow_thickness"), own("linear_density")};
+}
+
+mesoscale::SectionShape section_of(const Settings& settings, const std::string& path) {
+  using mesoscale::SectionShape;
+  if (settings.is(path, "ellipse")) return SectionShape::ellipse;
+  if (settings.is(path, "power_ellipse")) return SectionShape::power_ellipse;
+  if (settings.is(path, "capped_lens")) return SectionShape::capped_lens;
+  return SectionShape::lens;
+}
+
 mesoscale::WeaveSpec weave_of(const Settings& settings, const std::string& block) {
   mesoscale::WeaveSpec weave;
   take(settings, block + ".pattern", weave.pattern);
+  if (weave.pattern == "matrix" && settings.has(block + ".matrix"))
+    weave.pattern += " " + settings.text(block + ".matrix");
   take(settings, block + ".tow_width", weave.tow_width);
   take(settings, block + ".gap", weave.gap);
   take(settings, block + ".tow_thickness", weave.tow_thickness);
@@ -48,6 +65,10 @@ mesoscale::WeaveSpec weave_of(const Settings& settings, const std::string& block
   take(settings, block + ".resin_density", weave.resin_density);
   take(settings, block + ".fibre_modulus", weave.fibre_modulus);
   take(settings, block + ".fibre_diameter", weave.fibre_diameter);
+  weave.section = section_of(settings, block + ".section");
+  take(settings, block + ".section_power", weave.section_power);
+  take(settings, block + ".section_cap", weave.section_cap);
+  weave.own = {own_tow_of(settings, block + ".warp."), own_tow_of(settings, block + ".weft.")};
   return weave;
 }
 

@@ -94,6 +94,8 @@ void run_solid(const Case& a_case, RunFolder& folder, const Cache& cache, Findin
   findings.solid = cached<mesoscale::solid::SolidResult>(
       folder, cache, ChainStage::solid, a_case, read_solid_result, [&] { return run_solid_stage(a_case); });
   folder.write("mesoscale/stiffness.json", stiffness_json(*findings.solid));
+  if (!findings.solid->sheared.empty())
+    folder.write("mesoscale/stiffness_by_shear.csv", sheared_csv(findings.solid->sheared));
 }
 
 void run_friction(const Case& a_case, RunFolder& folder, const Cache& cache, Findings& findings) {
@@ -189,6 +191,7 @@ ReportInput report_input(const Case& a_case, const Findings& findings) {
     input.fabric = findings.cell->fabric;
     input.height = report_height(findings.pictures->height);
     input.section = report_section(findings.pictures->section);
+    input.tow_bodies = findings.pictures->bodies;
   }
   input.solid = findings.solid;
   if (findings.friction) {
@@ -265,6 +268,8 @@ void print_cell(const mesoscale::CellSummary& s, const mesoscale::TowBodies& bod
              degrees * s.locking_angle);
   fmt::print("contact fraction     {:.2f} % of one face at 0.05 mm\n", 100.0 * s.contact_area_fraction);
   fmt::print("tow fibre fraction   {:.3f}\n", s.tow_fibre_volume_fraction);
+  fmt::print("overlap of tows      {:.3g} mm deep, {:.3g} mm^3 a repeat\n",
+             1e3 * std::max(bodies.height_depth, 0.0), 1e9 * bodies.height_volume);
   fmt::print(
       "tows as bodies       {:.2g} % off the closed volume, {:.2g} % of it in two tows ({:.3g} mm voxels)\n",
       100.0 * bodies.volume_error, 100.0 * bodies.overlap_share, 1e3 * bodies.voxel);

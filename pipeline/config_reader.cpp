@@ -104,6 +104,8 @@ class ValueReader {
       read_list(setting, node_);
     } else if (key_.type == KeyType::rows) {
       read_rows(setting);
+    } else if (key_.type == KeyType::bits) {
+      read_bits(setting);
     } else if (key_.type == KeyType::names) {
       read_names(setting);
     } else if (node_.kind != ConfigNode::Kind::scalar) {
@@ -136,8 +138,9 @@ class ValueReader {
       case KeyType::pair:
       case KeyType::list:
       case KeyType::rows:
+      case KeyType::bits:
       case KeyType::names:
-        return;  // read_pair, read_list, read_rows, read_names
+        return;  // read_pair, read_list, read_rows, read_bits, read_names
     }
   }
 
@@ -162,6 +165,22 @@ class ValueReader {
     if (!fits)
       return refuse("*.rows"_family, fmt::format("must be a list of lists of {} values", columns), example());
     for (const ConfigNode& row : node_.items) read_list(setting, row);
+  }
+
+  void read_bits(Setting& setting) {
+    const auto is_bit = [](const ConfigNode& node) { return node.text == "0" || node.text == "1"; };
+    const auto is_row = [&](const ConfigNode& row) {
+      return row.kind == ConfigNode::Kind::list && !row.items.empty() &&
+             std::all_of(row.items.begin(), row.items.end(), is_bit);
+    };
+    if (node_.kind != ConfigNode::Kind::list || node_.items.empty() ||
+        !std::all_of(node_.items.begin(), node_.items.end(), is_row))
+      return refuse("*.bits"_family, "must be a list of lists of 0 and 1",
+                    fmt::format("For instance {}: [[1, 0], [0, 1]]", last_name(key_.path)));
+    for (const ConfigNode& row : node_.items) {
+      if (!setting.text.empty()) setting.text += '/';
+      for (const ConfigNode& bit : row.items) setting.text += bit.text;
+    }
   }
 
   void read_names(Setting& setting) {
@@ -681,6 +700,12 @@ std::string resolved_value(const Setting& setting) {
                          write_quantity(setting.values[1], key.unit));
     case KeyType::list:
       return list_text(setting.many.begin(), setting.many.end(), key.unit);
+    case KeyType::bits: {
+      std::string rows;
+      for (const char c : setting.text)
+        rows += c == '/' ? "], [" : (rows.empty() || rows.back() == '[' ? "" : ", ") + std::string(1, c);
+      return "[[" + rows + "]]";
+    }
     case KeyType::names:
       return "[" + join_words(setting.names, ", ") + "]";
     case KeyType::rows: {

@@ -40,6 +40,8 @@ std::string value_column(const Key& key) {
       return "file";
     case KeyType::names:
       return "[key, ...]";
+    case KeyType::bits:
+      return "[[0 or 1, ...], ...]";
     case KeyType::pair:
       return fmt::format("[{0}, {0}]", key.unit);
     case KeyType::list:

@@ -42,7 +42,10 @@ std::vector<Key> weave_keys() {
   const auto cell = Stage::cell;
   return {
       {.path = "weave.pattern", .type = KeyType::text, .presence = required, .stage = cell,
-       .help = "plain, twill m/n or satin N/k."},
+       .help = "plain, twill m/n, twill m/n step s, satin N/k, crowfoot, or matrix for any other."},
+      {.path = "weave.matrix", .type = KeyType::bits, .presence = required, .stage = cell,
+       .used_when = "weave.pattern=matrix",
+       .help = "One repeat, a row a warp and an entry a weft: 1 where the warp is over."},
       {.path = "weave.tow_width", .type = KeyType::quantity, .unit = "mm", .presence = required,
        .range = "(0 mm, 100 mm)", .stage = cell, .help = "Width of a tow (paper, Table 1: 4.64 mm)."},
       {.path = "weave.gap", .type = KeyType::quantity, .unit = "mm", .presence = required, .range = "[0 mm, 100 mm)",
@@ -66,10 +69,40 @@ std::vector<Key> weave_keys() {
       {.path = "weave.fibre_diameter", .type = KeyType::quantity, .unit = "um", .presence = defaulted,
        .default_text = "18.5 um", .range = "(0 um, 1000 um)", .stage = cell,
        .help = "Of one filament; recalled, not measured."},
+      {.path = "weave.section", .type = KeyType::choice, .presence = defaulted, .default_text = "lens",
+       .choices = {"lens", "ellipse", "power_ellipse", "capped_lens"}, .stage = cell,
+       .help = "Outline of a tow cut across. Lens and capped lens do not reach into the tows they cross; the others do."},
+      {.path = "weave.section_power", .type = KeyType::quantity, .presence = defaulted, .default_text = "0.5",
+       .range = "[0.2, 4]", .stage = cell, .used_when = "weave.section=power_ellipse",
+       .help = "n of t/2 (1 - (2y/w)^2)^(n/2): 1 is the ellipse, smaller is fuller."},
+      {.path = "weave.section_cap", .type = KeyType::quantity, .presence = defaulted, .default_text = "0.6",
+       .range = "[0.1, 1]", .stage = cell, .used_when = "weave.section=capped_lens",
+       .help = "Share of the width that is arc; the rest are straight flanks."},
+  };
+}
+
+std::vector<Key> cell_keys() {
+  const auto cell = Stage::cell;
+  return {
       {.path = "cell.state", .type = KeyType::choice, .presence = defaulted, .default_text = "as_woven",
        .choices = {"as_woven", "consolidated"}, .stage = cell,
        .help = "as_woven: molten, at fabric thickness, for forming; consolidated: the solid part."},
   };
+}
+
+// What one direction has of its own.
+std::vector<Key> own_tow_keys() {
+  std::vector<Key> keys;
+  for (const std::string direction : {"warp", "weft"})
+    for (Key key : weave_keys()) {
+      const std::string name = key.path.substr(key.path.find('.') + 1);
+      if (name != "tow_width" && name != "gap" && name != "tow_thickness" && name != "linear_density") continue;
+      key.path = "weave." + direction + "." + name;
+      key.presence = Presence::optional;
+      key.help = fmt::format("Of the {}s alone; else weave.{}.", direction, name);
+      keys.push_back(std::move(key));
+    }
+  return keys;
 }
 
 std::vector<Key> fabric_keys() {
@@ -88,14 +121,17 @@ std::vector<Key> calibration_weave_keys() {
       {"pattern", "plain"}, {"tow_width", "4.64 mm"}, {"gap", "0.75 mm"}, {"tow_thickness", "0.75 mm"},
       {"fabric_thickness", "1.5 mm"}, {"linear_density", "1872 tex"}, {"fibre_mass_fraction", "60 %"}};
   std::vector<Key> keys;
-  for (Key key : weave_keys()) {
-    if (!key.path.starts_with("weave.")) continue;
+  std::vector<Key> all = weave_keys();
+  append(all, own_tow_keys());
+  for (Key key : all) {
     for (const auto& [name, value] : table1)
       if (key.path == "weave." + name) key.default_text = value;
     key.path = "friction.calibration." + key.path;
-    key.presence = defaulted;
+    const std::string when = "friction.law=stribeck friction.contact_pressure=real";
+    if (key.used_when.empty() && key.presence == required) key.presence = defaulted;
     key.stage = Stage::friction;
-    key.used_when = "friction.law=stribeck friction.contact_pressure=real";
+    // What another key of the weave asks for, the same key of this weave asks for here.
+    key.used_when = key.used_when.empty() ? when : when + " friction.calibration." + key.used_when;
     key.help = "Of the fabric that was pulled. " + key.help;
     keys.push_back(std::move(key));
   }
@@ -391,6 +427,8 @@ std::vector<Key> artefact_keys() {
 std::vector<Key> all_keys() {
   std::vector<Key> keys = head_keys();
   append(keys, weave_keys());
+  append(keys, own_tow_keys());
+  append(keys, cell_keys());
   append(keys, voxel_keys());
   append(keys, fabric_keys());
   append(keys, solid_keys());

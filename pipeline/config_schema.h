@@ -15,6 +15,7 @@ enum class KeyType {
   pair,      ///< two quantities in a list
   list,      ///< any number of quantities in a list, at least one
   rows,      ///< list of lists of `columns` quantities each
+  bits,      ///< list of lists of 0 and 1; as text "10/01"
   names,     ///< list of some of `choices`, at least one
   file       ///< path of a file that exists, relative to the configuration file
 };

@@ -148,8 +148,12 @@ struct SummaryRecord {
 std::string summary_json(const SummaryRecord& record);
 
 /// Stiffness of the solid part, Voigt (shear strains doubled). What was not computed is absent: C of a stack
-/// without end, A, B and D of one ply with free faces. `iterations` lists the load cases of C, then of the ply.
+/// without end, A, B and D of one ply with free faces. `iterations` lists the load cases of C, then of the
+/// ply.
 std::string stiffness_json(const mesoscale::solid::SolidResult& result);
+/// A row an angle: A, B, D of the ply (upper halves, 1 = warp at every angle) and what it presses with where
+/// it is held flat, a kelvin and a unit of resin shrinkage.
+std::string sheared_csv(const std::vector<mesoscale::solid::ShearedSolid>& sheared);
 
 std::string fabric_json(const mesoscale::FabricProperties& fabric);
 /// Reads what fabric_json wrote: every number comes back bit for bit.

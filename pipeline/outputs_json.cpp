@@ -321,6 +321,8 @@ std::string summary_json(const SummaryRecord& record) {
     root["mesoscale"]["tow_volume_error"] = record.tow_bodies->volume_error;
     root["mesoscale"]["tow_overlap_share"] = record.tow_bodies->overlap_share;
     root["mesoscale"]["tow_overlap_depth_mm"] = 1e3 * record.tow_bodies->overlap_depth;
+    root["mesoscale"]["height_overlap_depth_mm"] = 1e3 * record.tow_bodies->height_depth;
+    root["mesoscale"]["height_overlap_volume_mm3"] = 1e9 * record.tow_bodies->height_volume;
   }
   if (record.stamping) root["macroscale"] = stamping_json(*record.stamping);
   if (record.stamping && record.grid_error)

@@ -117,13 +117,18 @@ std::vector<Condition> cell_facts(const mesoscale::CellSummary& cell) {
       {"Consolidated thickness", significant(1e3 * cell.consolidated_thickness, 3) + " mm"}};
 }
 
+std::string overlap_words(const std::optional<mesoscale::TowBodies>& bodies) {
+  if (!bodies || bodies->height_depth <= 0.0) return " and nowhere cuts into them.";
+  return fmt::format(" and cuts into them by up to {} mm.", significant(1e3 * bodies->height_depth, 2));
+}
+
 std::string weave(const ReportInput& input) {
   std::string out;
   if (!input.section.empty()) {
     out += figure(section_picture(input.section),
                   "Section through the weave, at true proportions. Weft tows (blue) are cut across; the warp "
-                  "tow (brown) "
-                  "runs over and under them and nowhere cuts into them.");
+                  "tow (brown) runs over and under them" +
+                      overlap_words(input.tow_bodies));
   }
   std::string left, right;
   if (!input.height.height.empty()) {

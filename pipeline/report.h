@@ -8,6 +8,7 @@
 #include "macroscale/grid_error.h"
 #include "macroscale/stamping.h"
 #include "mesoscale/cell_spec.h"
+#include "mesoscale/level_set.h"
 #include "mesoscale/solid/solid_cell.h"
 #include "pipeline/outputs.h"
 #include "pipeline/picture.h"
@@ -37,6 +38,7 @@ struct ReportInput {
   std::optional<mesoscale::FabricProperties> fabric = {};
   std::optional<mesoscale::solid::SolidResult> solid = {};
   HeightField height = {};
+  std::optional<mesoscale::TowBodies> tow_bodies = {};
   std::vector<SectionLine> section = {};  ///< of one cell, with its tows
 
   std::vector<FrictionTestRow> friction_test = {};

@@ -107,10 +107,15 @@ std::vector<Condition> solid_facts(const solid::SolidResult& s) {
                                {"Thickness", significant(1e3 * s.thickness, 4) + " mm"}};
   if (s.tow) {
     facts.push_back({"Tows, share of the volume", significant(100.0 * s.tow_share, 4) + " %"});
-    facts.push_back({"Tow, along and across",
-                     gigapascal(s.tow->axial_modulus) + ", " + gigapascal(s.tow->transverse_modulus)});
-    facts.push_back({"Tow, shear along and across",
-                     gigapascal(s.tow->axial_shear) + ", " + gigapascal(s.tow->transverse_shear)});
+    const auto& [warp, weft] = *s.tow;
+    const bool alike = warp.axial_modulus == weft.axial_modulus;
+    for (const auto& [name, tow] : {std::pair{alike ? "Tow" : "Warp", &warp}, {"Weft", &weft}}) {
+      if (alike && tow == &weft) break;
+      facts.push_back({fmt::format("{}, along and across", name),
+                       gigapascal(tow->axial_modulus) + ", " + gigapascal(tow->transverse_modulus)});
+      facts.push_back({fmt::format("{}, shear along and across", name),
+                       gigapascal(tow->axial_shear) + ", " + gigapascal(tow->transverse_shear)});
+    }
   }
   if (s.plate) {
     const Eigen::Matrix3d soft = membrane(s).inverse(), bent = bending(s).inverse();
@@ -162,7 +167,7 @@ std::vector<Verdict> solid_verdicts(const solid::SolidResult& s) {
                      pair.first_name, significant(pair.per_unit * pair.first, 4), pair.second_name,
                      significant(pair.per_unit * pair.second, 4), significant(100.0 * pair.gap(), 2),
                      fmt::arg("u", pair.unit))});
-  if (found.empty()) {
+  if (found.empty() && !s.balance.empty()) {
     std::string names;
     for (const solid::BalancePair& pair : s.balance)
       names += fmt::format("{}{} = {}", names.empty() ? "" : ", ", pair.first_name, pair.second_name);

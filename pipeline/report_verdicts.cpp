@@ -198,6 +198,15 @@ void friction_comparison(Verdicts& out, const ReportInput& input) {
   out.add(Tone::note, text + ".");
 }
 
+void overlap(Verdicts& out, const std::optional<mesoscale::TowBodies>& bodies) {
+  if (!bodies || bodies->height_depth <= 0.0) return;
+  out.add(
+      Tone::attention,
+      fmt::format("Tows reach into each other by up to {} mm, {} mm³ a repeat: a section fuller than the "
+                  "lens overlaps with the tow whose path goes round it. lens and capped_lens do not.",
+                  significant(1e3 * bodies->height_depth, 2), significant(1e9 * bodies->height_volume, 3)));
+}
+
 void priors(Verdicts& out, const mesoscale::FabricProperties& fabric) {
   const auto& names = fabric.provenance.unverified;
   if (names.empty()) return;
@@ -221,6 +230,7 @@ std::vector<Verdict> verdicts(const ReportInput& input) {
     friction_range(out, *input.stamping);
   }
   friction_comparison(out, input);
+  overlap(out, input.tow_bodies);
   if (input.solid)
     for (Verdict& verdict : solid_verdicts(*input.solid)) out.add(verdict.tone, std::move(verdict.text));
   if (input.fabric) priors(out, *input.fabric);

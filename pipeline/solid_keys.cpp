@@ -49,6 +49,15 @@ std::vector<Key> solid_keys() {
        .help = "Young's modulus of the solid resin; prior: polypropylene at room temperature."},
       {.path = "solid.resin_poisson", .type = KeyType::quantity, .presence = defaulted, .default_text = "0.4",
        .range = "(-1, 0.49)", .stage = stage, .help = "Its Poisson's ratio; prior: polypropylene."},
+      {.path = "solid.fibre_expansion", .type = KeyType::quantity, .unit = "1/K", .presence = defaulted,
+       .default_text = "5e-6 1/K", .range = "[-0.01 1/K, 0.01 1/K]", .stage = stage,
+       .help = "Linear thermal expansion of the fibre; prior: E-glass."},
+      {.path = "solid.resin_expansion", .type = KeyType::quantity, .unit = "1/K", .presence = defaulted,
+       .default_text = "1.2e-4 1/K", .range = "[-0.01 1/K, 0.01 1/K]", .stage = stage,
+       .help = "Of the solid resin; prior: polypropylene."},
+      {.path = "solid.shear_angles", .type = KeyType::list, .unit = "deg", .presence = Presence::optional,
+       .range = "[-60 deg, 60 deg]", .stage = stage,
+       .help = "Trellis angles at which the stiffness is tabled as well, for instance [0 deg, 15 deg, 30 deg, 45 deg]."},
   };
 }
 
@@ -88,6 +97,9 @@ solid::SolidSpec solid_of(const Settings& settings) {
   take(settings, "solid.fibre_poisson", spec.fibre_poisson);
   take(settings, "solid.resin_modulus", spec.resin.modulus);
   take(settings, "solid.resin_poisson", spec.resin.poisson);
+  take(settings, "solid.fibre_expansion", spec.fibre_expansion);
+  take(settings, "solid.resin_expansion", spec.resin_expansion);
+  if (settings.has("solid.shear_angles")) spec.shear_angles = settings.many("solid.shear_angles");
   return spec;
 }
 

@@ -2,6 +2,8 @@
 
 #include <algorithm>
 
+#include <fmt/format.h>
+
 namespace heddle::pipeline {
 
 namespace {
@@ -45,6 +47,29 @@ void read_solution(const Hdf5Reader& file, const std::string& group, Part& part)
   part.memory = static_cast<std::size_t>(file.number(group + "/memory"));
 }
 
+void write_vectors(Hdf5Writer& file, const std::string& path, const std::vector<solid::Vector6>& vectors) {
+  std::vector<double> flat;
+  for (const solid::Vector6& v : vectors) flat.insert(flat.end(), v.data(), v.data() + v.size());
+  file.write(path + "/count", static_cast<int>(vectors.size()));
+  if (!flat.empty()) file.write(path + "/values", flat);
+}
+
+std::vector<solid::Vector6> read_vectors(const Hdf5Reader& file, const std::string& path) {
+  std::vector<solid::Vector6> vectors(static_cast<std::size_t>(file.integer(path + "/count")));
+  if (vectors.empty()) return vectors;
+  const std::vector<double> flat = file.doubles(path + "/values");
+  if (flat.size() != 6 * vectors.size()) throw Hdf5Error(path + " has another size");
+  for (std::size_t k = 0; k < vectors.size(); ++k) std::copy_n(flat.data() + 6 * k, 6, vectors[k].data());
+  return vectors;
+}
+
+template <class Causes>
+void read_causes(const Hdf5Reader& file, const std::string& path, Causes& causes) {
+  const std::vector<solid::Vector6> vectors = read_vectors(file, path);
+  if (vectors.size() != causes.size()) throw Hdf5Error(path + " has another number of causes");
+  std::copy(vectors.begin(), vectors.end(), causes.begin());
+}
+
 }  // namespace
 
 std::string bytes_of(const solid::SolidResult& result, const std::string& key) {
@@ -55,21 +80,37 @@ std::string bytes_of(const solid::SolidResult& result, const std::string& key) {
   file.write("/thickness", result.thickness);
   file.write("/tow_share", result.tow_share);
   file.write("/different_voxels", static_cast<double>(result.different_voxels));
+  file.write("/balanced", result.balanced ? 1 : 0);
   if (result.tow) {
-    const solid::TransverseIsotropy& t = *result.tow;
-    file.write("/tow", std::vector<double>{t.axial_modulus, t.transverse_modulus, t.axial_shear,
-                                           t.transverse_shear, t.axial_poisson});
+    std::vector<double> constants;
+    for (const solid::TransverseIsotropy& t : *result.tow)
+      constants.insert(constants.end(), {t.axial_modulus, t.transverse_modulus, t.axial_shear,
+                                         t.transverse_shear, t.axial_poisson});
+    file.write("/tow", constants);
   }
   if (result.plate) {
     write_solution(file, "/plate", *result.plate);
     write_matrix(file, "/plate/all", result.plate->all);
     write_matrix(file, "/plate/upper", result.plate->upper);
+    write_vectors(file, "/plate/held", result.plate->held);
   }
   if (result.stack) {
     write_solution(file, "/stack", *result.stack);
     write_matrix(file, "/stack/stiffness", result.stack->stiffness);
     write_matrix(file, "/stack/voigt", result.stack->voigt);
     write_matrix(file, "/stack/reuss", result.stack->reuss);
+    write_vectors(file, "/stack/held", result.stack->held);
+  }
+  file.write("/sheared/count", static_cast<int>(result.sheared.size()));
+  for (std::size_t k = 0; k < result.sheared.size(); ++k) {
+    const solid::ShearedSolid& s = result.sheared[k];
+    const std::string group = fmt::format("/sheared/{:06d}", k);
+    file.write(group + "/numbers", std::vector<double>{s.shear_angle, s.thickness, s.fibre_fraction});
+    file.write(group + "/converged", s.converged ? 1 : 0);
+    write_matrix(file, group + "/plate", s.plate);
+    write_matrix(file, group + "/stack", s.stack);
+    write_vectors(file, group + "/plate_held", {s.plate_held.begin(), s.plate_held.end()});
+    write_vectors(file, group + "/stack_held", {s.stack_held.begin(), s.stack_held.end()});
   }
   return file.finish();
 }
@@ -82,17 +123,20 @@ solid::SolidResult read_solid_result(const Hdf5Reader& file) {
   std::copy(voxels.begin(), voxels.end(), result.voxels.begin());
   result.thickness = file.number("/thickness");
   result.tow_share = file.number("/tow_share");
+  result.balanced = file.integer("/balanced") != 0;
   result.different_voxels = static_cast<std::size_t>(file.number("/different_voxels"));
   if (file.has("/tow")) {
     const std::vector<double> t = file.doubles("/tow");
-    if (t.size() != 5) throw Hdf5Error("/tow has another size");
-    result.tow = solid::TransverseIsotropy{t[0], t[1], t[2], t[3], t[4]};
+    if (t.size() != 10) throw Hdf5Error("/tow has another size");
+    result.tow = {solid::TransverseIsotropy{t[0], t[1], t[2], t[3], t[4]},
+                  solid::TransverseIsotropy{t[5], t[6], t[7], t[8], t[9]}};
   }
   if (file.has("/plate")) {
     solid::PlateStiffness& plate = result.plate.emplace();
     read_solution(file, "/plate", plate);
     read_matrix(file, "/plate/all", plate.all);
     read_matrix(file, "/plate/upper", plate.upper);
+    plate.held = read_vectors(file, "/plate/held");
     plate.set_parts();
   }
   if (file.has("/stack")) {
@@ -101,6 +145,22 @@ solid::SolidResult read_solid_result(const Hdf5Reader& file) {
     read_matrix(file, "/stack/stiffness", stack.stiffness);
     read_matrix(file, "/stack/voigt", stack.voigt);
     read_matrix(file, "/stack/reuss", stack.reuss);
+    stack.held = read_vectors(file, "/stack/held");
+  }
+  result.sheared.resize(static_cast<std::size_t>(file.integer("/sheared/count")));
+  for (std::size_t k = 0; k < result.sheared.size(); ++k) {
+    solid::ShearedSolid& s = result.sheared[k];
+    const std::string group = fmt::format("/sheared/{:06d}", k);
+    const std::vector<double> numbers = file.doubles(group + "/numbers");
+    if (numbers.size() != 3) throw Hdf5Error(group + "/numbers has another size");
+    s.shear_angle = numbers[0];
+    s.thickness = numbers[1];
+    s.fibre_fraction = numbers[2];
+    s.converged = file.integer(group + "/converged") != 0;
+    read_matrix(file, group + "/plate", s.plate);
+    read_matrix(file, group + "/stack", s.stack);
+    read_causes(file, group + "/plate_held", s.plate_held);
+    read_causes(file, group + "/stack_held", s.stack_held);
   }
   result.balance = solid::balance_of(result);
   return result;

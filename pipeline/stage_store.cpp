@@ -28,10 +28,10 @@ auto members(Summary& s) {
                   s.consolidated_thickness);
 }
 
-static_assert(sizeof(mesoscale::TowBodies) == 4 * sizeof(double));
+static_assert(sizeof(mesoscale::TowBodies) == 6 * sizeof(double));
 template <class Bodies>
 auto body_members(Bodies& b) {
-  return std::tie(b.voxel, b.volume_error, b.overlap_share, b.overlap_depth);
+  return std::tie(b.voxel, b.volume_error, b.overlap_share, b.overlap_depth, b.height_depth, b.height_volume);
 }
 
 static_assert(sizeof(FrictionCurveRow) == 7 * sizeof(double));

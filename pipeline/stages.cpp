@@ -188,10 +188,12 @@ FrictionStage run_friction_stage(const Case& a_case, const mesoscale::FabricProp
 WeavePictures weave_pictures(const mesoscale::CellSpec& spec) {
   const auto cell = mesoscale::unit_cell(mesoscale::fabric_geometry(spec.weave, spec.state), 0.0);
   WeavePictures pictures;
-  pictures.height = mesoscale::height_field(cell, 96);
+  // Large repeats take what a repeat of eight does, so that no picture outgrows a screen.
+  const int tows = std::max(cell.weave.warps, cell.weave.wefts);
+  pictures.height = mesoscale::height_field(cell, tows <= 2 ? 96 : std::min(32 * tows, 256));
   pictures.section = mesoscale::warp_cut(cell);
-  pictures.voxels = mesoscale::tow_labels(cell, 32, 32);
-  const mesoscale::TriMesh mesh = mesoscale::tow_surfaces(cell);
+  pictures.voxels = mesoscale::tow_labels(cell, tows <= 8 ? 32 : 256 / tows, 32);
+  const mesoscale::TriMesh mesh = mesoscale::tow_surfaces(cell, tows <= 8 ? 24 : 192 / tows);
   for (const auto& t : mesh.triangles)
     pictures.tows.push_back({mesh.vertices[t[0]], mesh.vertices[t[1]], mesh.vertices[t[2]]});
   pictures.bodies = mesoscale::tow_bodies(cell);

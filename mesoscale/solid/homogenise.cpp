@@ -15,9 +15,11 @@ struct Energies {
   SolverSummary solver;
   HomogenisationChecks checks;
   std::size_t memory;
+  std::vector<Vector6> held;  // work of held stresses on the whole fields [J/K] or [J]
 };
 
-Energies solve(const ElasticCell& cell, Faces faces, const MacroLoad& load, const SolverOptions& options) {
+Energies solve(const ElasticCell& cell, Faces faces, const MacroLoad& load, const SolverOptions& options,
+               std::span<const HeldStress> held) {
   const CellSolver solver(cell, faces, mean_stiffness(cell));
   const Matrix6 macro = macro_energy(cell, load);
   std::array<double, loads> scale;
@@ -41,6 +43,8 @@ Energies solve(const ElasticCell& cell, Faces faces, const MacroLoad& load, cons
         std::max(result.checks.hill_mandel, std::abs(energy(l, l) - from_stress(l, l)) / energy(l, l));
   result.checks.asymmetry = (from_stress - from_stress.transpose()).norm() / from_stress.norm();
   result.memory = solver.memory();
+  for (const HeldStress& stress : held)
+    result.held.push_back(held_work(cell, load, u, solver.plane(), solver.planes(), stress));
   return result;
 }
 
@@ -61,6 +65,11 @@ Matrix6 reuss(const ElasticCell& cell) {
   return (compliance / static_cast<double>(cell.voxels())).inverse();
 }
 
+std::vector<Vector6> per(double size, std::vector<Vector6> works) {
+  for (Vector6& work : works) work /= size;
+  return works;
+}
+
 }  // namespace
 
 Matrix6 mean_stiffness(const ElasticCell& cell) {
@@ -70,11 +79,13 @@ Matrix6 mean_stiffness(const ElasticCell& cell) {
   return sum / static_cast<double>(cell.voxels());
 }
 
-PeriodicStiffness periodic_stiffness(const ElasticCell& cell, const SolverOptions& options) {
-  const Energies found = solve(cell, Faces::periodic, unit_strains(), options);
+PeriodicStiffness periodic_stiffness(const ElasticCell& cell, const SolverOptions& options,
+                                     std::span<const HeldStress> held) {
+  const Energies found = solve(cell, Faces::periodic, unit_strains(), options, held);
   return {found.energy / cell.edges.determinant(),
           mean_stiffness(cell),
           reuss(cell),
+          per(cell.edges.determinant(), found.held),
           found.solver,
           found.checks,
           found.memory};
@@ -86,14 +97,16 @@ void PlateStiffness::set_parts() {
   d = all.bottomRightCorner<3, 3>();
 }
 
-PlateStiffness plate_stiffness(const ElasticCell& cell, const SolverOptions& options) {
+PlateStiffness plate_stiffness(const ElasticCell& cell, const SolverOptions& options,
+                               std::span<const HeldStress> held) {
   const MacroLoad load = unit_plate_loads();
-  const Energies found = solve(cell, Faces::free, load, options);
+  const Energies found = solve(cell, Faces::free, load, options, held);
   const double area = cell.edges.determinant() / cell.edges(2, 2);
   PlateStiffness plate;
   plate.all = found.energy / area;
   plate.set_parts();
   plate.upper = macro_energy(cell, load) / area;
+  plate.held = per(area, found.held);
   plate.solver = found.solver;
   plate.checks = found.checks;
   plate.memory = found.memory;

@@ -1,6 +1,7 @@
 #pragma once
 
 #include "mesoscale/solid/cell_solver.h"
+#include "mesoscale/solid/thermal.h"
 
 namespace heddle::mesoscale::solid {
 
@@ -18,13 +19,18 @@ struct PeriodicStiffness {
   Matrix6 stiffness;  ///< Voigt [Pa]
   Matrix6 voigt;      ///< mean stiffness, upper bound [Pa]
   Matrix6 reuss;      ///< inverse of the mean compliance, lower bound [Pa]; zero where the cell has voids
+  /// Mean stress with which the cell presses where it is held in shape, of each cause:
+  /// sigma = C E - held [Pa/K] or [Pa]
+  std::vector<Vector6> held;
   SolverSummary solver;
   HomogenisationChecks checks;
   std::size_t memory = 0;  ///< of the solver [byte]
 };
 
+/// @param held  of the cell's materials, for each cause (thermal.h)
 /// @throws NumericalError  if the mean stiffness is not positive definite
-PeriodicStiffness periodic_stiffness(const ElasticCell& cell, const SolverOptions& options = {});
+PeriodicStiffness periodic_stiffness(const ElasticCell& cell, const SolverOptions& options = {},
+                                     std::span<const HeldStress> held = {});
 
 /// Effective stiffness of a plate: a cell that repeats in x and y and has free faces.
 ///
@@ -40,13 +46,17 @@ struct PlateStiffness {
   Matrix6 all;        ///< [A B; B D]
   void set_parts();   ///< A, B and D from it
   Matrix6 upper;      ///< the same of fields without w: upper bound
+  /// {N, M} with which the plate presses where it is held flat, of each cause:
+  /// {N, M} = [A B; B D] {E, K} - held [N/m, N] a kelvin, or a unit of strain
+  std::vector<Vector6> held;
   SolverSummary solver;
   HomogenisationChecks checks;
   std::size_t memory = 0;  ///< of the solver [byte]
 };
 
 /// @throws NumericalError  if the mean stiffness is not positive definite
-PlateStiffness plate_stiffness(const ElasticCell& cell, const SolverOptions& options = {});
+PlateStiffness plate_stiffness(const ElasticCell& cell, const SolverOptions& options = {},
+                               std::span<const HeldStress> held = {});
 
 /// Mean over the voxels [Pa].
 Matrix6 mean_stiffness(const ElasticCell& cell);

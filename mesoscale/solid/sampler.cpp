@@ -74,7 +74,7 @@ class Sampler {
         options_(options),
         thickness_(thickness),
         count_{options.per_pitch * cell.weave.wefts, options.per_pitch * cell.weave.warps, options.layers},
-        step_(cell.pitch / options.per_pitch),
+        step_{cell.tow[1].spacing / options.per_pitch, cell.tow[0].spacing / options.per_pitch},
         height_(thickness / options.layers),
         share_(2, std::vector<float>(voxels())) {
     const std::array<double, 2> size = cell.size();
@@ -102,8 +102,8 @@ class Sampler {
       std::fill(sums.begin(), sums.end(), 0.0);
       for (int b = 0; b < across_voxel; ++b)
         for (int a = 0; a < across_voxel; ++a) {
-          const Column c =
-              column(cell_, (i + (a + 0.5) / across_voxel) * step_, (j + (b + 0.5) / across_voxel) * step_);
+          const Column c = column(cell_, (i + (a + 0.5) / across_voxel) * step_[0],
+                                  (j + (b + 0.5) / across_voxel) * step_[1]);
           if (c.warp) add(c.warp_bottom, c.warp_top, 0, sums);
           if (c.weft) add(c.weft_bottom, c.weft_top, 1, sums);
         }
@@ -125,16 +125,16 @@ class Sampler {
   }
 
   void fill_keys(int j, std::vector<Key>& keys) const {
-    const double eta = (j + 0.5) * step_;
+    const double eta = (j + 0.5) * step_[1];
     for (int i = 0; i < count_[0]; ++i) {
-      const double xi = (i + 0.5) * step_;
-      const int warp = static_cast<int>(std::lround(eta / cell_.pitch)),
-                weft = static_cast<int>(std::lround(xi / cell_.pitch));
+      const double xi = (i + 0.5) * step_[0];
+      const int warp = static_cast<int>(std::lround(eta / cell_.tow[0].spacing)),
+                weft = static_cast<int>(std::lround(xi / cell_.tow[1].spacing));
       const double warp_rise =
-          warp_centre(cell_, warp, xi + 0.5 * step_) - warp_centre(cell_, warp, xi - 0.5 * step_);
+          warp_centre(cell_, warp, xi + 0.5 * step_[0]) - warp_centre(cell_, warp, xi - 0.5 * step_[0]);
       const double weft_rise =
-          weft_centre(cell_, weft, eta + 0.5 * step_) - weft_centre(cell_, weft, eta - 0.5 * step_);
-      const int warp_bin = direction_bin(warp_rise, step_), weft_bin = direction_bin(weft_rise, step_);
+          weft_centre(cell_, weft, eta + 0.5 * step_[1]) - weft_centre(cell_, weft, eta - 0.5 * step_[1]);
+      const int warp_bin = direction_bin(warp_rise, step_[0]), weft_bin = direction_bin(weft_rise, step_[1]);
       for (int k = 0; k < count_[2]; ++k) keys[at(i, j, k)] = recipe(i, j, k, warp_bin, weft_bin).key();
     }
   }
@@ -220,7 +220,8 @@ class Sampler {
       const auto [place, fresh] =
           known.try_emplace({is_weft, bin}, static_cast<std::uint16_t>(directions.size()));
       if (fresh) directions.push_back(direction(is_weft, bin));
-      content.portions.push_back({tow_phase, place->second, static_cast<double>(steps) / share_steps});
+      content.portions.push_back(
+          {is_weft ? weft_phase : warp_phase, place->second, static_cast<double>(steps) / share_steps});
     };
     add_tow(r.warp, false, r.warp_direction);
     add_tow(r.weft, true, r.weft_direction);
@@ -240,7 +241,8 @@ class Sampler {
   SamplerOptions options_;
   double thickness_;
   std::array<int, 3> count_;
-  double step_, height_;
+  std::array<double, 2> step_;  // along {xi, eta}
+  double height_;
   Eigen::Matrix3d edges_, to_reference_;
   std::vector<std::vector<float>> share_;  // of warps and wefts
 };

@@ -12,13 +12,13 @@ enum class Mixing {
 };
 
 struct SamplerOptions {
-  int per_pitch = 32;  ///< voxels along one pitch
+  int per_pitch = 32;  ///< voxels along one pitch, each way
   int layers = 32;     ///< voxels over the thickness
   Mixing mixing = Mixing::laminate;
 };
 
 /// Phases of a sampled cell: stiffness is asked for in this order.
-inline constexpr std::uint16_t resin_phase = 0, tow_phase = 1;
+inline constexpr std::uint16_t resin_phase = 0, warp_phase = 1, weft_phase = 2;
 
 /// One repeat of a weave as voxels, on the sheared lattice where the cell is sheared. Volume shares come from
 /// 4 x 4 columns a voxel, each cut exactly along z (and are then rounded to 1/32); directions from the slope

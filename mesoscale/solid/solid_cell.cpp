@@ -1,7 +1,9 @@
 #include "mesoscale/solid/solid_cell.h"
 
+#include <Eigen/Cholesky>
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 
 #include <fmt/format.h>
 
@@ -25,6 +27,7 @@ double BalancePair::gap() const {
 
 std::vector<BalancePair> balance_of(const SolidResult& result) {
   std::vector<BalancePair> pairs;
+  if (!result.balanced) return pairs;
   if (result.stack) {
     const Matrix6& c = result.stack->stiffness;
     pairs.push_back({"C11", "C22", c(0, 0), c(1, 1), "MPa", 1e-6});
@@ -63,25 +66,98 @@ Problems check(const SolidSpec& spec) {
               fmt::format("{:g} GPa", 1e-9 * spec.resin.modulus),
               spec.resin.modulus > 0.0 && spec.resin.modulus <= 1e12,
               "must satisfy 0 < resin_modulus <= 1000 GPa", "Polypropylene has 1.5 GPa.");
+  check_range(problems, "*.range"_family.of("solid.fibre_expansion"), "solid.fibre_expansion",
+              fmt::format("{:g} 1/K", spec.fibre_expansion), std::abs(spec.fibre_expansion) <= 1e-2,
+              "must lie between -0.01 and 0.01 1/K", "E-glass has 5e-6 1/K.");
+  check_range(problems, "*.range"_family.of("solid.resin_expansion"), "solid.resin_expansion",
+              fmt::format("{:g} 1/K", spec.resin_expansion), std::abs(spec.resin_expansion) <= 1e-2,
+              "must lie between -0.01 and 0.01 1/K", "Polypropylene has about 1.2e-4 1/K.");
+  // Beyond, the cell is drawn out so far that its voxels no longer resolve it.
+  constexpr double most = 60.5 * std::numbers::pi / 180.0;
+  for (const double angle : spec.shear_angles)
+    check_range(problems, "*.range"_family.of("solid.shear_angles"), "solid.shear_angles",
+                fmt::format("{:g} deg", angle * 180.0 / std::numbers::pi), std::abs(angle) <= most,
+                "must lie between -60 and 60 deg", "Write [0 deg, 15 deg, 30 deg, 45 deg].");
   return problems;
+}
+
+namespace {
+
+// A weave as voxels, with what its contents are made of.
+struct WovenSolid {
+  VoxelCell cell;
+  std::array<TransverseIsotropy, 2> tows;
+  std::vector<Matrix6> stiffness;
+  std::vector<HeldStress> held;  // by HeldCause
+};
+
+WovenSolid woven_solid(const WeaveMatrix& weave, const PressedFabric& fabric, double fibre_modulus,
+                       const SolidSpec& spec) {
+  const IsotropicPhase fibre{fibre_modulus, spec.fibre_poisson};
+  const auto& [warp, weft] = fabric.crossing.tow;
+  WovenSolid solid;
+  solid.cell = sample(unit_cell(weave, fabric.crossing), fabric.thickness, spec.grid);
+  solid.tows = {tow(spec.tow_model, fibre, spec.resin, warp.fibre_fraction),
+                tow(spec.tow_model, fibre, spec.resin, weft.fibre_fraction)};
+  const std::array phases{stiffness(spec.resin), stiffness(solid.tows[0]), stiffness(solid.tows[1])};
+  solid.stiffness = content_stiffness(solid.cell, phases);
+  const auto held = [&](double fibre_strain, double resin_strain) {
+    const auto of_tow = [&](const TowGeometry& t) {
+      return schapery(fibre, fibre_strain, spec.resin, resin_strain, t.fibre_fraction);
+    };
+    const std::array strains{FreeStrain{resin_strain, resin_strain}, of_tow(warp), of_tow(weft)};
+    return content_held_stress(solid.cell, phases, strains);
+  };
+  solid.held = {held(spec.fibre_expansion, spec.resin_expansion), held(0.0, 1.0)};
+  return solid;
+}
+
+ShearedSolid sheared_solid(const FabricGeometry& fabric, double angle, double fibre_modulus,
+                           const SolidSpec& spec) {
+  const PressedFabric at_angle = pressed(fabric, angle);
+  const WovenSolid solid = woven_solid(fabric.weave, at_angle, fibre_modulus, spec);
+  const ElasticCell cell = elastic_cell(solid.cell, solid.stiffness);
+  const PlateStiffness plate = plate_stiffness(cell, spec.solver, solid.held);
+  const PeriodicStiffness stack = periodic_stiffness(cell, spec.solver, solid.held);
+  ShearedSolid result;
+  result.shear_angle = angle;
+  result.thickness = at_angle.thickness;
+  result.fibre_fraction =
+      std::max(at_angle.crossing.tow[0].fibre_fraction, at_angle.crossing.tow[1].fibre_fraction);
+  result.converged = plate.solver.converged && stack.solver.converged;
+  result.plate = plate.all;
+  result.stack = stack.stiffness;
+  for (std::size_t cause = 0; cause < held_causes; ++cause) {
+    result.plate_held[cause] = plate.held[cause];
+    result.stack_held[cause] = stack.held[cause];
+  }
+  return result;
+}
+
+}  // namespace
+
+Vector6 free_strain(const Matrix6& stiffness, const Vector6& held) {
+  return stiffness.llt().solve(held);
 }
 
 SolidResult analyse(const WeaveSpec& weave, const SolidSpec& spec) {
   if (Problems problems = check(spec); !problems.empty()) throw InputError(std::move(problems));
   const FabricGeometry fabric = fabric_geometry(weave, CellState::consolidated);
-  const VoxelCell cell = sample(unit_cell(fabric, 0.0), fabric.thickness, spec.grid);
+  const WovenSolid solid = woven_solid(fabric.weave, pressed(fabric, 0.0), weave.fibre_modulus, spec);
+  const ElasticCell cell = elastic_cell(solid.cell, solid.stiffness);
   SolidResult result;
-  result.tow = tow(spec.tow_model, {weave.fibre_modulus, spec.fibre_poisson}, spec.resin,
-                   fabric.crossing.fibre_fraction);
-  const std::array phases{stiffness(spec.resin), stiffness(*result.tow)};
-  const std::vector<Matrix6> c = content_stiffness(cell, phases);
-  result.voxels = cell.count;
+  result.tow = solid.tows;
+  result.balanced = fabric.crossing.balanced() && alike_both_ways(fabric.weave);
+  result.voxels = solid.cell.count;
   result.thickness = fabric.thickness;
-  result.tow_share = phase_shares(cell, phases.size())[tow_phase];
-  result.different_voxels = cell.contents.size();
-  result.plate = plate_stiffness(elastic_cell(cell, c), spec.solver);
-  result.stack = periodic_stiffness(elastic_cell(cell, c), spec.solver);
+  const std::vector<double> shares = phase_shares(solid.cell, 3);
+  result.tow_share = shares[warp_phase] + shares[weft_phase];
+  result.different_voxels = solid.cell.contents.size();
+  result.plate = plate_stiffness(cell, spec.solver, solid.held);
+  result.stack = periodic_stiffness(cell, spec.solver, solid.held);
   result.balance = balance_of(result);
+  for (const double angle : spec.shear_angles)
+    result.sheared.push_back(sheared_solid(fabric, angle, weave.fibre_modulus, spec));
   return result;
 }
 

@@ -1,7 +1,9 @@
 #pragma once
 
+#include <array>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "mesoscale/cell_spec.h"
 #include "mesoscale/solid/homogenise.h"
@@ -17,6 +19,9 @@ struct SolidSpec {
   TowModel tow_model = TowModel::chamis;
   double fibre_poisson = 0.22;        ///< of glass [-]; prior
   IsotropicPhase resin{1.5e9, 0.40};  ///< solid polypropylene; prior
+  double fibre_expansion = 5e-6;      ///< of E-glass [1/K]; recalled
+  double resin_expansion = 1.2e-4;  ///< of solid polypropylene [1/K], linear; recalled, grades differ by 30 %
+  std::vector<double> shear_angles;  ///< trellis angles of the table, besides the unsheared ply [rad]
   SolverOptions solver;
 };
 
@@ -32,18 +37,41 @@ struct BalancePair {
   double gap() const;                   ///< relative to the larger [-]
 };
 
+/// Causes of free strain in PlateStiffness::held and PeriodicStiffness::held of a weave.
+enum HeldCause : std::size_t {
+  expansion,  ///< one kelvin in glass and resin
+  shrinkage,  ///< a linear strain of one in the resin alone: crystallisation, by its negative
+  held_causes
+};
+
+/// The consolidated fabric after shear by a trellis angle: axis 1 along the warp, the weft at 90 deg less the
+/// angle.
+struct ShearedSolid {
+  double shear_angle = 0.0;                       ///< [rad]
+  double thickness = 0.0;                         ///< [m]
+  double fibre_fraction = 0.0;                    ///< of its fuller tows [-]
+  bool converged = false;                         ///< ply and stack
+  Matrix6 plate;                                  ///< [A B; B D] of the ply
+  Matrix6 stack;                                  ///< C of the stack [Pa]
+  std::array<Vector6, held_causes> plate_held{};  ///< {N, M}
+  std::array<Vector6, held_causes> stack_held{};  ///< [Pa/K] and [Pa]
+};
+
 struct SolidResult {
   std::array<int, 3> voxels{};
   double thickness = 0.0;                  ///< of the cell [m]
   std::optional<PlateStiffness> plate;     ///< of one ply with free faces; absent for a periodic voxel file
   std::optional<PeriodicStiffness> stack;  ///< of plies on one another without end; absent for a voxel plate
-  std::optional<TransverseIsotropy> tow;   ///< of a weave: what its tows are made of
-  double tow_share = 0.0;                  ///< of a weave: volume of the tows [-]
+  /// Of a weave: what its tows are made of, {warp, weft}
+  std::optional<std::array<TransverseIsotropy, 2>> tow;
+  double tow_share = 0.0;  ///< of a weave: volume of the tows [-]
   std::size_t different_voxels = 0;
-  std::vector<BalancePair> balance;  ///< all that were compared
+  std::vector<ShearedSolid> sheared;  ///< of a weave, at the angles asked for
+  bool balanced = true;               ///< warp and weft can be exchanged, as far as is known
+  std::vector<BalancePair> balance;   ///< all that were compared: none if they cannot
 };
 
-/// What a balanced weave has twice.
+/// What a balanced weave has twice; nothing of one that is not.
 std::vector<BalancePair> balance_of(const SolidResult& result);
 
 /// Those that differ by more than 0.1 %: from an unbalanced weave, or from axes in the wrong order.
@@ -53,6 +81,9 @@ std::vector<BalancePair> imbalances(const SolidResult& result);
 /// @throws InputError      if the weave or the specification has problems
 /// @throws NumericalError  as the solver
 SolidResult analyse(const WeaveSpec& weave, const SolidSpec& spec);
+
+/// The free strains that `held` of a result makes, {E, K} of the ply or the strain of the stack.
+Vector6 free_strain(const Matrix6& stiffness, const Vector6& held);
 
 /// A cell from a voxel file.
 /// @throws InputError  if check(spec) finds something

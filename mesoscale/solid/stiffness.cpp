@@ -16,20 +16,6 @@ Vector6 mandel_weights() {
   return w;
 }
 
-// Strain in Voigt form (engineering shear) of the turned body from that of the body at rest.
-Matrix6 strain_turn(const Eigen::Matrix3d& r) {
-  Matrix6 result;
-  for (int row = 0; row < 6; ++row)
-    for (int column = 0; column < 6; ++column) {
-      const auto [a, b] = voigt_axes[row];
-      const auto [i, j] = voigt_axes[column];
-      // e'_ab = r_ai r_bj e_ij; off-diagonal strains stand twice in the sum and doubled in Voigt form.
-      const double both = i == j ? r(a, i) * r(b, i) : 0.5 * (r(a, i) * r(b, j) + r(a, j) * r(b, i));
-      result(row, column) = (a == b ? 1.0 : 2.0) * both;
-    }
-  return result;
-}
-
 }  // namespace
 
 Matrix6 isotropic_stiffness(double bulk, double shear) {
@@ -51,6 +37,20 @@ Matrix6 stiffness(const TransverseIsotropy& m) {
     throw NumericalError("micromechanics: the constants are not those of a stable material");
   const Matrix6 c = factor.solve(Matrix6::Identity());
   return 0.5 * (c + c.transpose());
+}
+
+Matrix6 strain_turn(const Eigen::Matrix3d& turn) {
+  Matrix6 result;
+  for (int row = 0; row < 6; ++row)
+    for (int column = 0; column < 6; ++column) {
+      const auto [a, b] = voigt_axes[row];
+      const auto [i, j] = voigt_axes[column];
+      // e'_ab = r_ai r_bj e_ij; off-diagonal strains stand twice in the sum and doubled in Voigt form.
+      const double both =
+          i == j ? turn(a, i) * turn(b, i) : 0.5 * (turn(a, i) * turn(b, j) + turn(a, j) * turn(b, i));
+      result(row, column) = (a == b ? 1.0 : 2.0) * both;
+    }
+  return result;
 }
 
 Matrix6 rotated(const Matrix6& stiffness, const Eigen::Matrix3d& turn) {

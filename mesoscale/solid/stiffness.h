@@ -39,6 +39,9 @@ Matrix6 stiffness(const TransverseIsotropy& material);
 /// @param turn  rotation or reflection; its columns are the images of the axes 1, 2, 3
 Matrix6 rotated(const Matrix6& stiffness, const Eigen::Matrix3d& turn);
 
+/// Strains (Voigt form, engineering shears) of the same body turned, from those of the body at rest.
+Matrix6 strain_turn(const Eigen::Matrix3d& turn);
+
 /// A rotation that takes axis 1 to a direction.
 /// @param direction  of any length > 0
 Eigen::Matrix3d turn_to(const Eigen::Vector3d& direction);

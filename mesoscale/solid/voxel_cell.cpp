@@ -79,6 +79,28 @@ Matrix6 laminate(std::span<const double> share, std::span<const Matrix6> stiffne
   return rotated(layers_across_z(share, turned), frame);
 }
 
+std::vector<Matrix6> layer_strains(std::span<const double> share, std::span<const Matrix6> stiffness,
+                                   const Eigen::Vector3d& normal) {
+  const bool has_void =
+      std::any_of(stiffness.begin(), stiffness.end(), [](const Matrix6& c) { return c.isZero(0.0); });
+  if (share.size() == 1 || has_void) return std::vector<Matrix6>(share.size(), Matrix6::Identity());
+  const Eigen::Matrix3d frame = frame_of(normal);
+  std::vector<Matrix6> turned;
+  for (const Matrix6& c : stiffness) turned.push_back(rotated(c, frame.transpose()));
+  const Matrix6 whole = layers_across_z(share, turned);
+  std::vector<Matrix6> result;
+  for (const Matrix6& c : turned) {
+    // Stresses across the layers are those of the whole, strains along them too.
+    const Eigen::Matrix3d inverse = part(c, across, across).inverse();
+    Matrix6 strain = Matrix6::Zero();
+    put(strain, along, along, Eigen::Matrix3d::Identity());
+    put(strain, across, across, inverse * part(whole, across, across));
+    put(strain, across, along, inverse * (part(whole, across, along) - part(c, across, along)));
+    result.push_back(strain_turn(frame) * strain * strain_turn(frame.transpose()));
+  }
+  return result;
+}
+
 std::vector<Matrix6> content_stiffness(const VoxelCell& cell, std::span<const Matrix6> phases) {
   std::map<std::pair<std::uint16_t, std::uint16_t>, Matrix6> turned;
   const auto stiffness_of = [&](const Portion& portion) -> const Matrix6& {

@@ -45,6 +45,11 @@ std::vector<double> phase_shares(const VoxelCell& cell, std::size_t phases);
 Matrix6 laminate(std::span<const double> share, std::span<const Matrix6> stiffness,
                  const Eigen::Vector3d& normal);
 
+/// How each layer strains when the laminate as a whole does: e_n = A_n e, Voigt. Layers beside a void strain
+/// as the whole.
+std::vector<Matrix6> layer_strains(std::span<const double> share, std::span<const Matrix6> stiffness,
+                                   const Eigen::Vector3d& normal);
+
 /// Stiffness of each content [Pa].
 /// @param phases  of each phase, its axis 1 along the direction [Pa]
 std::vector<Matrix6> content_stiffness(const VoxelCell& cell, std::span<const Matrix6> phases);

@@ -33,6 +33,25 @@ const std::vector<Wrong>& wrong_specs() {
       {"weave.resin_density.range", [](CellSpec& s) { s.weave.resin_density = 0.0; }},
       {"weave.fibre_modulus.range", [](CellSpec& s) { s.weave.fibre_modulus = -1.0; }},
       {"weave.fibre_diameter.range", [](CellSpec& s) { s.weave.fibre_diameter = 18.5; }},
+      {"weave.warp.tow_width.range", [](CellSpec& s) { s.weave.own[0].tow_width = 0.0; }},
+      {"weave.weft.gap.range", [](CellSpec& s) { s.weave.own[1].gap = -1e-3; }},
+      {"weave.weft.tow_thickness.range", [](CellSpec& s) { s.weave.own[1].tow_thickness = 0.75; }},
+      {"weave.warp.linear_density.range", [](CellSpec& s) { s.weave.own[0].linear_density = 1872.0; }},
+      {"weave.warp.tow_width.proportion", [](CellSpec& s) { s.weave.own[0].tow_width = 1.2e-3; }},
+      {"weave.weft.gap.proportion", [](CellSpec& s) { s.weave.own[1].gap = 5e-3; }},
+      {"weave.warp.tow_thickness.holds_material",
+       [](CellSpec& s) {
+         s.weave.own[0].tow_thickness = 0.35e-3;
+         s.weave.fabric_thickness = 1.1e-3;
+       }},
+      {"weave.warp.tow_thickness.balance",
+       [](CellSpec& s) {
+         s.weave.own = {OwnTow{{}, {}, 1.2e-3, {}}, OwnTow{{}, {}, 0.2e-3, 200e-6}};
+         s.weave.fabric_thickness = 1.4e-3;
+       }},
+      {"weave.section_power.range", [](CellSpec& s) { s.weave.section_power = 0.0; }},
+      {"weave.section_cap.range", [](CellSpec& s) { s.weave.section_cap = 0.0; }},
+      {"weave.pattern.falls_apart", [](CellSpec& s) { s.weave.pattern = "matrix 10/10"; }},
       {"weave.fabric_thickness.consistent", [](CellSpec& s) { s.weave.fabric_thickness = 1.2e-3; }},
       {"weave.tow_thickness.holds_material", [](CellSpec& s) { s.weave.linear_density = 4000e-6; }},
       {"weave.fibre_mass_fraction.packing",

@@ -9,6 +9,7 @@
 using namespace heddle;
 using namespace heddle::mesoscale;
 using heddle::test::derivative_gap;
+using heddle::test::lens_of;
 using heddle::test::table1;
 
 namespace {
@@ -67,14 +68,14 @@ TEST_CASE("crossover force and stiffness are slopes of its energy", "[compaction
 TEST_CASE("crossover force converges: a brute-force sum over the overlap gives the same", "[compaction]") {
   const CrossingGeometry crossing = table1().crossing;
   const CrossoverContact contact(crossing, 0.0, law);
-  const TowSqueeze squeeze(law, crossing.section.thickness, crossing.fibre_fraction);
+  const TowSqueeze squeeze(law, lens_of(crossing).thickness, crossing.tow[0].fibre_fraction);
   const double c = GENERATE(0.1e-3, 0.4e-3, 0.9e-3);
   constexpr int n = 600;
-  const double edge = 0.5 * crossing.section.width, step = edge / n;
+  const double edge = 0.5 * lens_of(crossing).width, step = edge / n;
   std::vector<double> gap(n);
   for (int i = 0; i < n; ++i) {
     const double u = step * (i + 0.5);
-    gap[static_cast<std::size_t>(i)] = crossing.section.drop(u) - crossing.path.drop(u);
+    gap[static_cast<std::size_t>(i)] = lens_of(crossing).drop(u) - crossing.tow[0].path.drop(u);
   }
   double force = 0.0;
   for (double a : gap)
@@ -85,7 +86,7 @@ TEST_CASE("crossover force converges: a brute-force sum over the overlap gives t
 TEST_CASE("the arm of a square overlap under even pressure is 0.3826 of its side", "[compaction]") {
   // Mean distance from the centre of a square of side w: w (sqrt 2 + asinh 1) / 6.
   const CrossingGeometry crossing = table1().crossing;
-  const double side = crossing.section.width;
+  const double side = lens_of(crossing).width;
   const double mean = side * (std::sqrt(2.0) + std::asinh(1.0)) / 6.0;
   CHECK(CrossoverContact(crossing, 0.0, law).arm(0.0) == Approx(mean).epsilon(1e-3));
 }

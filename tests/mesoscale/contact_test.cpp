@@ -10,6 +10,7 @@
 using namespace heddle;
 using namespace heddle::mesoscale;
 using heddle::test::derivative_gap;
+using heddle::test::lens_of;
 using heddle::test::radians;
 using heddle::test::table1;
 
@@ -68,7 +69,7 @@ TEST_CASE("plate pressure agrees with a sum over the sampled height field", "[co
   const HeightField field = height_field(unit_cell(fabric, 0.0), 1000);
   double sum = 0.0;
   for (std::size_t k = 0; k < field.top.size(); ++k)
-    if (field.covered[k]) sum += plate.squeeze.stress(depth - (0.75e-3 - field.top[k]));
+    if (field.covered[k]) sum += plate.squeeze[0].stress(depth - (0.75e-3 - field.top[k]));
   CHECK(plate.pressure(depth) == Approx(sum / static_cast<double>(field.top.size())).epsilon(2e-3));
 }
 

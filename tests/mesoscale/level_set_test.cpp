@@ -8,18 +8,11 @@
 
 using namespace heddle;
 using namespace heddle::mesoscale;
+using heddle::test::ellipse_on_sine;
 using heddle::test::radians;
 using heddle::test::table1;
 
 namespace {
-
-// The tow geometry that does interpenetrate (mesoscale.md 2).
-UnitCell ellipse_on_sine() {
-  const FabricGeometry fabric = table1();
-  const CrossingGeometry& c = fabric.crossing;
-  return {fabric.weave, c.pitch, EllipseSection{c.section.width, c.section.thickness},
-          SinePath{c.pitch, c.path.height}, 0.0};
-}
 
 // A point of a tow's face and its outward normal, from the closed forms of section and path.
 struct OnFace {
@@ -31,9 +24,9 @@ OnFace on_face(const UnitCell& cell, const TowPiece& tow, double along, double a
   const bool warp = tow.direction == TowDirection::warp;
   const auto height_at = [&](double u, double v) {
     const double centre = warp ? warp_centre(cell, tow.index, u) : weft_centre(cell, tow.index, u);
-    return centre + side * half_height(cell.section, v);
+    return centre + side * half_height(cell.tow[0].section, v);
   };
-  const double side_place = tow.index * cell.pitch + across;
+  const double side_place = tow.index * cell.tow[0].spacing + across;
   const auto xy = warp ? cell.place(along, side_place) : cell.place(side_place, along);
   const double e = 1e-8;  // [m]
   const double du = (height_at(along + e, across) - height_at(along - e, across)) / (2.0 * e);
@@ -65,7 +58,8 @@ TEST_CASE("a tow's distance is what was gone along the normal from its face", "[
         // What the gap in z times the cosine above the same place would have said.
         const bool warp = tow.direction == TowDirection::warp;
         const double eta = q[1] / std::cos(cell.shear_angle), xi = q[0] - eta * std::sin(cell.shear_angle);
-        const OnFace below = on_face(cell, tow, warp ? xi : eta, (warp ? eta : xi) - cell.pitch, side);
+        const OnFace below =
+            on_face(cell, tow, warp ? xi : eta, (warp ? eta : xi) - cell.tow[0].spacing, side);
         const double first_order = side * (q[2] - below.place[2]) * std::abs(below.normal[2]);
         worst_first_order = std::max(worst_first_order, std::abs(first_order - gone));
       }
@@ -76,7 +70,7 @@ TEST_CASE("a tow's distance beyond its edges and cuts is that to the nearest of 
           "[mesoscale][level_set]") {
   const UnitCell cell = GENERATE(unit_cell(table1(), radians(20.0)), ellipse_on_sine());
   const TowPiece tow{TowDirection::warp, 0};
-  const double half = 0.5 * width(cell.section), cut = -0.5 * cell.pitch;
+  const double half = 0.5 * width(cell.tow[0].section), cut = -0.5 * cell.tow[0].spacing;
   std::vector<OnFace> face;  // near the places asked for: an edge and the first cut
   for (int i = 0; i <= 200; ++i)
     for (int j = 0; j <= 400; ++j)
@@ -108,12 +102,13 @@ TEST_CASE("tows as level sets have the volume of their closed form", "[mesoscale
   const UnitCell cell = unit_cell(table1(), angle);
   const LevelSetCheck check = level_set_check(cell, 0.1e-3);
   REQUIRE(check.tow_volume.size() == 4);
-  CHECK(check.closed_form_volume == Approx(2.0 * area(cell.section) * cell.pitch * std::cos(angle)));
-  CHECK(check.closed_form_total == Approx(4.0 * check.closed_form_volume));
+  CHECK(check.closed_form_volume[0] ==
+        Approx(2.0 * area(cell.tow[0].section) * cell.tow[0].spacing * std::cos(angle)));
+  CHECK(check.closed_form_total == Approx(4.0 * check.closed_form_volume[0]));
   // Sharp edges and cuts are rounded over a voxel.
-  for (double v : check.tow_volume) CHECK(v == Approx(check.closed_form_volume).epsilon(0.015));
+  for (double v : check.tow_volume) CHECK(v == Approx(check.closed_form_volume[0]).epsilon(0.015));
   const double fine = volume(tow_level_set(cell, {TowDirection::weft, 1}, 0.05e-3));
-  CHECK(fine == Approx(check.closed_form_volume).epsilon(0.005));
+  CHECK(fine == Approx(check.closed_form_volume[0]).epsilon(0.005));
 }
 
 TEST_CASE("lens tows on arcs share no voxel; the height fields share nothing either",
@@ -132,7 +127,7 @@ TEST_CASE("elliptic tows on sines share 7 percent of a tow, by height fields and
           "[mesoscale][level_set]") {
   const UnitCell cell = ellipse_on_sine();
   const LevelSetCheck check = level_set_check(cell, 0.1e-3);
-  const double tow_per_pitch = area(cell.section) * cell.pitch;
+  const double tow_per_pitch = area(cell.tow[0].section) * cell.tow[0].spacing;
   CHECK(check.overlap_volume / 4.0 / tow_per_pitch == Approx(0.07).margin(0.01));
   CHECK(check.overlap_volume == Approx(penetration(cell, 100).volume).epsilon(0.03));
   CHECK(check.overlap_share == Approx(check.overlap_volume / check.closed_form_total));

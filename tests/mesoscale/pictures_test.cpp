@@ -27,7 +27,7 @@ TEST_CASE("tow surfaces are closed: every edge is run once each way", "[pictures
 TEST_CASE("tow surfaces enclose section area times pitch and point outwards", "[pictures]") {
   const double angle = radians(GENERATE(0.0, 25.0));
   const UnitCell cell = unit_cell(table1(), angle);
-  const double expected = 4.0 * 2.0 * area(cell.section) * cell.pitch * std::cos(angle);
+  const double expected = 4.0 * 2.0 * area(cell.tow[0].section) * cell.tow[0].spacing * std::cos(angle);
   CHECK(volume(tow_surfaces(cell, 12, 60)) == Approx(expected).epsilon(0.002));
 }
 
@@ -54,7 +54,7 @@ TEST_CASE("voxels fill the tows' volume and stand under the right tow", "[pictur
   const auto filled = std::count_if(voxels.labels.begin(), voxels.labels.end(), [](auto l) { return l > 0; });
   const double voxel = voxels.spacing[0] * voxels.spacing[1] * voxels.spacing[2];
   CHECK(static_cast<double>(filled) * voxel ==
-        Approx(4.0 * 2.0 * area(cell.section) * cell.pitch).epsilon(0.005));
+        Approx(4.0 * 2.0 * area(cell.tow[0].section) * cell.tow[0].spacing).epsilon(0.005));
 
   const auto label = [&](int i, int j, int k) {
     return voxels.labels[static_cast<std::size_t>((k * voxels.count[1] + j) * voxels.count[0] + i)];

@@ -26,10 +26,10 @@ const Curve& table1_curve() {
 TEST_CASE("a crossing under the reference tension carries it both ways", "[shear]") {
   const ShearModel& model = table1_models().shear;
   const LoadedCrossing loaded = model.loaded(0.0);
-  const TensionModel::State state = model.tension.relax({loaded.strain, loaded.strain});
+  const TensionModel::State state = model.tension.relax(loaded.strain);
   // The tension model reads the crossover force from a table of 600 points.
   CHECK(state.tension[0] == Approx(model.reference_tension).epsilon(1e-4));
-  CHECK(state.height[0] == Approx(loaded.height).epsilon(1e-4));
+  CHECK(state.height[0] == Approx(loaded.height[0]).epsilon(1e-4));
   CHECK(state.crossover_force == Approx(loaded.crossover_force).epsilon(1e-4));
 }
 
@@ -48,7 +48,7 @@ TEST_CASE("lateral shear flow is the slope of the lateral energy and starts at g
 
 TEST_CASE("closed tows resist as 2 t sin g times their lateral pressure", "[shear]") {
   const FormingModels& m = table1_models();
-  const double angle = radians(50.0), v0 = m.fabric.crossing.fibre_fraction;
+  const double angle = radians(50.0), v0 = m.fabric.crossing.tow[0].fibre_fraction;
   const double v = v0 * (4.64 / 5.39) / std::cos(angle);
   const double pressure = m.compaction.evaluate(v).stress - m.compaction.evaluate(v0).stress;
   CHECK(m.shear.flow(angle).lateral == Approx(2.0 * 0.75e-3 * std::sin(angle) * pressure).epsilon(1e-9));
@@ -113,14 +113,14 @@ TEST_CASE("the plain weave of Table 1 locks between 45 and 50 degrees", "[shear]
 TEST_CASE("the crossover film resists as the integral of its power law over the disc", "[shear]") {
   const FormingModels& m = table1_models();
   const ResinSpec resin;
-  const double a = m.fabric.crossing.path.wrap(), n = resin.power_index, rate = 2.0;
+  const double a = m.fabric.crossing.tow[0].path.wrap(), n = resin.power_index, rate = 2.0;
   // Torque times rate over the cell, at one rate, against m_s rate^(n + 1).
   const double power = integrate(0.0, a, 40, [&](double r) {
     const double film_rate = rate * r / resin.film_thickness;
     const double stress = resin.consistency * std::pow(film_rate, n);
     return stress * rate * r * 2.0 * std::numbers::pi * r;
   });
-  const double per_area = power / (m.fabric.crossing.pitch * m.fabric.crossing.pitch);
+  const double per_area = power / (m.fabric.crossing.tow[0].spacing * m.fabric.crossing.tow[0].spacing);
   CHECK(shear_rate_parts(m.fabric, resin, 0.0).film * std::pow(rate, n + 1.0) ==
         Approx(per_area).epsilon(1e-6));
 }

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <numbers>
+#include <variant>
 
 #include "mesoscale/cell.h"
 #include "mesoscale/forming.h"
@@ -10,6 +11,21 @@ namespace heddle::test {
 /// The plain weave of Table 1, which the defaults of CellSpec describe.
 inline mesoscale::FabricGeometry table1() {
   return mesoscale::fabric_geometry(mesoscale::WeaveSpec{}, mesoscale::CellState::as_woven);
+}
+
+/// The section of a crossing whose tows are lenses.
+inline mesoscale::LensSection lens_of(const mesoscale::CrossingGeometry& crossing) {
+  return std::get<mesoscale::LensSection>(crossing.tow[0].section);
+}
+
+/// Elliptic tows on sine paths: the geometry that does interpenetrate.
+inline mesoscale::UnitCell ellipse_on_sine() {
+  const mesoscale::FabricGeometry fabric = table1();
+  const mesoscale::TowGeometry& t = fabric.crossing.tow[0];
+  const mesoscale::UnitCell::Tow tow{
+      t.spacing, mesoscale::PowerEllipseSection{width(t.section), thickness(t.section), 1.0},
+      mesoscale::SinePath{t.spacing, t.path.height}};
+  return {fabric.weave, {tow, tow}, 0.0};
 }
 
 inline const mesoscale::FormingModels& table1_models() {

@@ -10,6 +10,7 @@
 using namespace heddle;
 using namespace heddle::mesoscale;
 using heddle::test::derivative_gap;
+using heddle::test::lens_of;
 using heddle::test::table1;
 using heddle::test::table1_models;
 
@@ -28,13 +29,13 @@ const Surface& table1_surface() {
 double free_weft_straightening(PathForm form) {
   TensionOptions options;
   options.form = form;
-  options.bending_stiffness = 1e-9;
+  options.bending_stiffness = {1e-9, 1e-9};
   const TensionModel model = tension_model(table1(), CompactionLaw{3.2e6, 5.0}, options);
   const double strain = 0.02;
   const TensionModel::State state = model.relax({strain, -0.015});
   CHECK(state.height[0] < 0.01e-3);
-  const double elongation =
-      state.tension[0] * model.pitch / model.stretch.stiffness + 0.5 * model.stretch.straightening;
+  const double elongation = state.tension[0] * model.tow[0].spacing / model.tow[0].stretch.stiffness +
+                            0.5 * model.tow[0].stretch.straightening;
   return (1.0 + strain) / (1.0 + elongation) - 1.0;
 }
 
@@ -80,9 +81,9 @@ TEST_CASE("crossing tows balance: twice N sin th of each is the crossover force"
   const TensionModel::State state = model.relax({e, 0.5 * e});
   for (std::size_t i = 0; i < 2; ++i) {
     const PathLength path =
-        model.length.evaluate(model.pitch * (1.0 + (i == 0 ? e : 0.5 * e)), state.height[i]);
-    const double along = state.tension[i] * model.pitch;  // N cos th
-    const double bending = model.crimp_stiffness * (state.height[i] - model.rest_height);
+        model.tow[0].length.evaluate(model.tow[0].spacing * (1.0 + (i == 0 ? e : 0.5 * e)), state.height[i]);
+    const double along = state.tension[i] * model.tow[0].spacing;  // N cos th
+    const double bending = model.tow[0].crimp_stiffness * (state.height[i] - model.tow[0].rest_height);
     CHECK(along * path.dl_dh / path.dl_dp + bending == Approx(state.crossover_force).epsilon(1e-6));
   }
 }
@@ -103,10 +104,11 @@ TEST_CASE("warp and weft exchange: pulling the warp straightens it and crimps th
 
 TEST_CASE("a warp with a free weft straightens at its own crimp", "[tension]") {
   const CrossingGeometry c = table1().crossing;
-  const SawToothPath saw{c.pitch, c.path.height};
+  const SawToothPath saw{c.tow[0].spacing, c.tow[0].path.height};
   CHECK(100.0 * free_weft_straightening(PathForm::saw_tooth) == Approx(100.0 * saw.crimp()).margin(0.002));
   CHECK(100.0 * saw.crimp() == Approx(0.963).margin(0.001));
-  CHECK(100.0 * free_weft_straightening(PathForm::arc) == Approx(100.0 * c.path.crimp()).margin(0.002));
+  CHECK(100.0 * free_weft_straightening(PathForm::arc) ==
+        Approx(100.0 * c.tow[0].path.crimp()).margin(0.002));
 }
 
 TEST_CASE("a straightened fabric is as stiff as its glass", "[tension]") {
@@ -120,7 +122,7 @@ TEST_CASE("a straightened fabric is as stiff as its glass", "[tension]") {
 TEST_CASE("compression meets the small tangent asked for", "[tension]") {
   const TensionModel& model = table1_models().tension;
   const double slope = (model.relax({-0.010, 0.0}).tension[0] - model.relax({-0.012, 0.0}).tension[0]) / 2e-3;
-  CHECK(slope == Approx(0.01 * model.stretch.stiffness / model.pitch).epsilon(0.01));
+  CHECK(slope == Approx(0.01 * model.tow[0].stretch.stiffness / model.tow[0].spacing).epsilon(0.01));
 }
 
 TEST_CASE("the tabulated energy is symmetric and convex at points and between", "[tension]") {
@@ -154,6 +156,6 @@ TEST_CASE("tabulated tension follows the direct solution within a thousandth of 
 
 TEST_CASE("tension that cannot be found names the strains", "[tension]") {
   TensionModel model = table1_models().tension;
-  model.stretch.stiffness = std::nan("");
+  model.tow[0].stretch.stiffness = std::nan("");
   CHECK_THROWS_WITH(model.relax({0.01, 0.002}), Catch::Contains("(0.01, 0.002)"));
 }

@@ -240,6 +240,9 @@ const std::vector<BadFile> bad_files{
     {"voxels_of_two_axes", {{"cell.voxels.shape.range", 4}, {"cell.voxels.size.range", 4}}},
     {"voxels_without_a_phase", {{"cell.phases.missing", 6}}},
     {"voxels_without_shear", {{"cell.phases.0.void", 7}}},
+    {"weave_falls_apart", {{"weave.pattern.falls_apart", 3}}},
+    {"weave_matrix_of_words", {{"weave.matrix.bits", 3}}},
+    {"weft_far_thinner_than_the_warp", {{"weave.tow_thickness.balance", 3}}},
     {"wrong_unit", {{"resin.film_thickness.unit", 4}}},
     {"zero_plate_area", {{"friction.calibration.plate_area.range", 4}}},
 };

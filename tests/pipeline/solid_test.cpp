@@ -2,6 +2,7 @@
 #include <unistd.h>
 
 #include <Eigen/LU>
+#include <algorithm>
 #include <catch2/catch.hpp>
 #include <cmath>
 #include <filesystem>
@@ -43,11 +44,12 @@ pipeline::RunOptions options_for(const std::string& config, const fs::path& outp
   return options;
 }
 
-const std::vector<std::string> coarse{"solid={per_pitch: 8, layers: 6}"};
+const std::vector<std::string> coarse{"solid={per_pitch: 8, layers: 6, shear_angles: [0 deg, 30 deg]}"};
 
 solid::SolidResult sample() {
   solid::SolidSpec spec;
   spec.grid = {.per_pitch = 6, .layers = 4};
+  spec.shear_angles = {0.0, 0.5};
   return solid::analyse(mesoscale::WeaveSpec{}, spec);
 }
 
@@ -74,6 +76,18 @@ TEST_CASE("a weave with solid writes its stiffness, from the cache to the same b
   CHECK(json["A_N_per_mm"][0][0].get<double>() == Approx(6200).epsilon(0.05));
   CHECK(json["B_N"].size() == 3);
   CHECK(json["D_N_mm"][0][0].get<double>() == Approx(55).epsilon(0.15));
+  // Free expansion per kelvin: more than glass, far less than resin; the tabled unsheared ply is the ply.
+  CHECK(json["ply_expansion_1_per_K"][0].get<double>() > 5e-6);
+  CHECK(json["ply_expansion_1_per_K"][0].get<double>() < 0.5 * 1.2e-4);
+  CHECK(json["ply_expansion_1_per_K"][0].get<double>() ==
+        Approx(json["ply_expansion_1_per_K"][1].get<double>()).epsilon(1e-3));
+  CHECK(json["sheared"].size() == 2);
+  CHECK(json["sheared"][0]["A_N_per_mm"] == json["A_N_per_mm"]);
+  CHECK(json["sheared"][1]["thickness_mm"].get<double>() ==
+        Approx(json["sheared"][0]["thickness_mm"].get<double>() / std::cos(std::acos(-1.0) / 6.0)));
+  const std::string table = read_text_file(scratch.path / "first/mesoscale/stiffness_by_shear.csv");
+  CHECK(std::count(table.begin(), table.end(), '\n') == 3);
+  CHECK(table.starts_with("shear_angle_deg,thickness_mm,tow_fibre_volume_fraction,A11_N_per_mm,"));
   const std::string report = read_text_file(scratch.path / "first/report.html");
   CHECK(report.find("The solid part") != std::string::npos);
   CHECK(report.find("The solid is balanced") != std::string::npos);
@@ -112,6 +126,8 @@ TEST_CASE("a solid result comes back from the cache's bytes bit for bit", "[pipe
   CHECK(pipeline::stiffness_json(after) == pipeline::stiffness_json(before));
   CHECK(pipeline::stiffness_tables(after) == pipeline::stiffness_tables(before));
   CHECK(after.stack->reuss == before.stack->reuss);
+  CHECK(after.sheared.size() == 2);
+  CHECK(pipeline::sheared_csv(after.sheared) == pipeline::sheared_csv(before.sheared));
   CHECK(after.plate->upper == before.plate->upper);
   CHECK(after.balance.size() == before.balance.size());
 }

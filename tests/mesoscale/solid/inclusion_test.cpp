@@ -135,9 +135,9 @@ TEST_CASE("mixed voxels bring the sheet of Table 1 within 0.3 % on 64 x 64 x 32"
   const double finest_membrane = 13.503e9, finest_bending = 50.97e-3;
   const FabricGeometry fabric = fabric_geometry(WeaveSpec{}, CellState::consolidated);
   const SolidSpec spec;
-  const TransverseIsotropy tow =
-      chamis({WeaveSpec{}.fibre_modulus, spec.fibre_poisson}, spec.resin, fabric.crossing.fibre_fraction);
-  const std::array phases{stiffness(spec.resin), stiffness(tow)};
+  const TransverseIsotropy tow = chamis({WeaveSpec{}.fibre_modulus, spec.fibre_poisson}, spec.resin,
+                                        fabric.crossing.tow[0].fibre_fraction);
+  const std::array phases{stiffness(spec.resin), stiffness(tow), stiffness(tow)};
   std::vector<double> stretched, bent;
   for (const int n : {8, 16, 32}) {
     const VoxelCell cell = sample(unit_cell(fabric, 0.0), fabric.thickness, {.per_pitch = n, .layers = n});
