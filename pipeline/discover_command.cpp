@@ -152,6 +152,8 @@ void demand_variety(const friction::CouponData& data, Problems& problems) {
                       "Vary at least one of speed, load, temperatures, orientation and dwell.", data.file});
 }
 
+}  // namespace
+
 Case read_friction_part(const RunOptions& options) {
   Case a_case = read_case(options.file, options.assignments);
   a_case.stamping.reset();
@@ -162,6 +164,23 @@ Case read_friction_part(const RunOptions& options) {
       {{"discover.friction"_rule, "friction", "", "is missing, and discovery in coupons needs it",
         "Add `friction:`; configs/discover/friction.yaml shows one.", options.file.string()}});
 }
+
+discover::CouponQuestion question_of(const Case& a_case, const discover::CouponRig& rig,
+                                     const std::vector<fs::path>& own_effects, Problems& problems) {
+  const DiscoverSpec spec = a_case.discover.value_or(DiscoverSpec{});
+  discover::CouponQuestion question;
+  question.base = start_of(*a_case.friction, rig.area);
+  question.rig = rig;
+  question.baseline = baseline_of(question.base, spec, problems);
+  question.effects = library_of(spec, own_effects, problems);
+  question.noise = spec.noise;
+  question.held_out = spec.held_out;
+  question.seed = static_cast<std::uint64_t>(spec.seed);
+  question.tow_pitch = spec.tow_pitch;
+  return question;
+}
+
+namespace {
 
 void set_number(Settings& settings, const std::string& path, double value) {
   const Key* key = find_key(path);
@@ -216,10 +235,8 @@ DiscoveryRecord discover_case_in(const Case& a_case, const fs::path& data,
   if (sidecar.plate_area) record.coupon_rig.rig.plate_area = *sidecar.plate_area;
   record.coupon_rig.faces = sidecar.faces.value_or(spec.faces);
   record.coupon_rig.area = area_of_pulled_fabric(a_case);
-  record.base = start_of(*a_case.friction, record.coupon_rig.area);
-  record.question.base = record.base;
-  record.question.baseline = baseline_of(record.base, spec, problems);
-  record.question.effects = library_of(spec, own_effects, problems);
+  record.question = question_of(a_case, record.coupon_rig, own_effects, problems);
+  record.base = record.question.base;
   friction::CouponData coupons;
   try {
     coupons = friction::read_coupons(
@@ -230,11 +247,6 @@ DiscoveryRecord discover_case_in(const Case& a_case, const fs::path& data,
     problems.insert(problems.end(), error.problems().begin(), error.problems().end());
   }
   if (!problems.empty()) throw InputError(std::move(problems));
-  record.question.rig = record.coupon_rig;
-  record.question.noise = spec.noise;
-  record.question.held_out = spec.held_out;
-  record.question.seed = static_cast<std::uint64_t>(spec.seed);
-  record.question.tow_pitch = spec.tow_pitch;
   record.findings = discover::discover_in_coupons(record.question, coupons);
   record.notes = record.findings.notes;
   record.notes.insert(record.notes.end(), a_case.notes.begin(), a_case.notes.end());

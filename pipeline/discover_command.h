@@ -29,6 +29,16 @@ struct DiscoveryRecord {
 DiscoveryRecord discover_case_in(const Case& a_case, const std::filesystem::path& data,
                                  const std::vector<std::filesystem::path>& own_effects = {});
 
+/// The case without its stamping.
+/// @throws InputError  if it has no friction
+Case read_friction_part(const RunOptions& options);
+
+/// What the case asks of coupons that this rig pulls.
+/// @param problems  numbers and effects that are not known are added
+discover::CouponQuestion question_of(const Case& a_case, const discover::CouponRig& rig,
+                                     const std::vector<std::filesystem::path>& own_effects,
+                                     Problems& problems);
+
 /// The settings with the baseline as it was fitted and, where one name was given, the effect it names.
 Settings discovered_settings(const Case& a_case, const DiscoveryRecord& record);
 
