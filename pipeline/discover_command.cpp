@@ -273,6 +273,7 @@ Settings discovered_settings(const Case& a_case, const DiscoveryRecord& record) 
 }
 
 int discover_case(const DiscoverOptions& options) {
+  if (!options.design.empty()) return plan_coupons(options);
   Case a_case = read_friction_part(options.run);
   if (!a_case.discover) a_case.discover.emplace();
   if (options.seed) a_case.discover->seed = *options.seed;

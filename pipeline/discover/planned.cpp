@@ -33,11 +33,10 @@ std::vector<double> planned_slips(int stretches, double pull_length) {
   return slips;
 }
 
-PlannedCampaign planned_campaign(const CouponQuestion& question, std::vector<CouponCell> cells,
-                                 int stretches) {
+PlannedCampaign planned_campaign(const CouponQuestion& question, std::vector<CouponCell> cells, int stretches,
+                                 std::size_t days) {
   PlannedCampaign campaign;
   const std::vector<double> slips = planned_slips(stretches, question.rig.rig.pull_length);
-  std::size_t days = 1;
   for (CouponCell& cell : cells) {
     days = std::max(days, cell.day + 1);
     cell.points.clear();

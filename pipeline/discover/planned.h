@@ -21,9 +21,10 @@ struct PlannedCampaign {
 std::vector<double> planned_slips(int stretches, double pull_length);
 
 /// @param cells  conditions, days and numbers of samples; their points are made here
+/// @param days   how many there are; 0: as the cells say
 /// @throws NumericalError  if the baseline has no finite force
-PlannedCampaign planned_campaign(const CouponQuestion& question, std::vector<CouponCell> cells,
-                                 int stretches);
+PlannedCampaign planned_campaign(const CouponQuestion& question, std::vector<CouponCell> cells, int stretches,
+                                 std::size_t days = 0);
 
 /// What a planned campaign can tell apart.
 Isolability isolability_of(const CouponQuestion& question, const PlannedCampaign& campaign);
