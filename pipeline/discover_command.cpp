@@ -3,6 +3,8 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
+#include <numbers>
 
 #include "core/text_file.h"
 #include "core/units.h"
@@ -193,6 +195,29 @@ void set_number(Settings& settings, const std::string& path, double value) {
   settings.add(std::move(setting));
 }
 
+/// Without the last digits that the way from degC to K and back leaves.
+double rounded(double value) {
+  return std::round(1e6 * value) / 1e6;
+}
+
+void print_next(const discover::Proposal& proposal) {
+  if (proposal.pulls.empty()) return;
+  std::vector<std::string> rivals;
+  for (const discover::Rival& rival : proposal.rivals)
+    rivals.push_back(fmt::format("{} ({:.2f})", rival.name, rival.probability));
+  fmt::print("Next, to tell {}; the right answer from {:.2f} to {:.2f}:\n", fmt::join(rivals, ", "),
+             proposal.right_before, proposal.right_after);
+  for (const discover::ProposedPull& next : proposal.pulls)
+    fmt::print("  {:g} mm/s, {:g} N, tool {:g} degC, fabric {:g} degC, {:g} deg, rest {:g} s\n",
+               rounded(1e3 * next.cell.pull.velocity), rounded(next.cell.pull.normal_force),
+               rounded(next.cell.pull.tool_temperature - 273.15),
+               rounded(next.cell.pull.fabric_temperature - 273.15),
+               rounded(next.cell.pull.orientation * 180.0 / std::numbers::pi), next.cell.dwell);
+  for (const auto& [i, j] : proposal.inseparable)
+    fmt::print("  no three conditions within the campaign's levels tell {} and {} apart\n",
+               proposal.rivals[i].name, proposal.rivals[j].name);
+}
+
 void print(const DiscoveryRecord& record, const fs::path& folder) {
   const discover::CouponFindings& f = record.findings;
   fmt::print("{}", in_words(f.decision.answer));
@@ -214,6 +239,7 @@ void print(const DiscoveryRecord& record, const fs::path& folder) {
         "({:.0f} to {:.0f}).\n",
         100.0 * f.gap->before, 100.0 * f.gap->after, 100.0 * f.gap->floor, 100.0 * f.gap->shrink,
         100.0 * f.gap->shrink_low, 100.0 * f.gap->shrink_high);
+  print_next(record.proposal);
   for (const std::string& note : record.notes) fmt::print("{}\n", note);
   fmt::print("results {}\n", folder.string());
 }
@@ -248,6 +274,9 @@ DiscoveryRecord discover_case_in(const Case& a_case, const fs::path& data,
   }
   if (!problems.empty()) throw InputError(std::move(problems));
   record.findings = discover::discover_in_coupons(record.question, coupons);
+  record.proposal =
+      discover::propose(record.question, record.findings, discover::candidate_grid(record.findings.campaign),
+                        {.seed = record.question.seed});
   record.notes = record.findings.notes;
   record.notes.insert(record.notes.end(), a_case.notes.begin(), a_case.notes.end());
   return record;
@@ -286,6 +315,7 @@ int discover_case(const DiscoverOptions& options) {
   folder.write("discover/patched.yaml", resolved_yaml(discovered_settings(a_case, record)));
   folder.write("discover/gap.csv", gap_csv(record));
   folder.write("discover/shape.csv", shape_csv(record));
+  folder.write("discover/next_experiments.csv", next_experiments_csv(record));
   for (const std::string& reason : record.findings.decision.reasons) folder.log(reason);
   folder.close(a_case, {});
   if (options.run.print) print(record, folder.path());

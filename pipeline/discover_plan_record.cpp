@@ -1,8 +1,12 @@
 #include "pipeline/discover_plan_record.h"
 
+#include <fmt/format.h>
+
 #include <nlohmann/json.hpp>
+#include <numbers>
 
 #include "core/units.h"
+#include "pipeline/discover_command.h"
 
 namespace heddle::pipeline {
 
@@ -26,7 +30,66 @@ ordered_json matrix_json(const Eigen::MatrixXd& matrix) {
   return rows;
 }
 
+ordered_json pair_json(const discover::Proposal& proposal, const discover::RivalPair& pair) {
+  return {proposal.rivals[pair.first].name, proposal.rivals[pair.second].name};
+}
+
+/// A setting as a lab would write it: six digits, not what the way from degC to K and back leaves.
+std::string setting(double value) {
+  return fmt::format("{:.6g}", value);
+}
+
+std::vector<std::pair<std::string, std::string>> settings_of(const discover::CouponCell& cell) {
+  return {{"velocity_mm_s", setting(1e3 * cell.pull.velocity)},
+          {"normal_force_N", setting(cell.pull.normal_force)},
+          {"tool_temperature_C", setting(cell.pull.tool_temperature - 273.15)},
+          {"fabric_temperature_C", setting(cell.pull.fabric_temperature - 273.15)},
+          {"orientation_deg", setting(cell.pull.orientation * 180.0 / std::numbers::pi)},
+          {"dwell_s", setting(cell.dwell)}};
+}
+
 }  // namespace
+
+ordered_json next_experiments_json(const discover::Proposal& proposal) {
+  ordered_json list = ordered_json::array();
+  for (const discover::ProposedPull& next : proposal.pulls) {
+    ordered_json one;
+    for (const auto& [column, value] : settings_of(next.cell)) one[column] = ordered_json::parse(value);
+    one["replicates"] = next.cell.samples;
+    one["expected_right"] = next.right;
+    one["expected_gain"] = next.gain;
+    one["separates"] = ordered_json::array();
+    for (const discover::RivalPair& pair : next.separates)
+      one["separates"].push_back(pair_json(proposal, pair));
+    list.push_back(std::move(one));
+  }
+  return list;
+}
+
+ordered_json proposal_json(const discover::Proposal& proposal) {
+  ordered_json json = {{"rivals", ordered_json::array()},
+                       {"right_before", proposal.right_before},
+                       {"right_after", proposal.right_after},
+                       {"not_separable", ordered_json::array()}};
+  for (const discover::Rival& rival : proposal.rivals)
+    json["rivals"].push_back({{"name", rival.name}, {"probability", rival.probability}});
+  for (const discover::RivalPair& pair : proposal.inseparable)
+    json["not_separable"].push_back(pair_json(proposal, pair));
+  return json;
+}
+
+std::string next_experiments_csv(const DiscoveryRecord& record) {
+  std::string text =
+      "condition_id,velocity_mm_s,normal_force_N,tool_temperature_C,fabric_temperature_C,orientation_deg,"
+      "dwell_s,replicates\n";
+  int number = 0;
+  for (const discover::ProposedPull& next : record.proposal.pulls) {
+    text += fmt::format("next{}", ++number);
+    for (const auto& [column, value] : settings_of(next.cell)) text += "," + value;
+    text += fmt::format(",{}\n", next.cell.samples);
+  }
+  return text;
+}
 
 ordered_json isolability_json(const ForwardModel& forward, const Isolability& isolability) {
   ordered_json json = {{"effects", ordered_json::array()}};

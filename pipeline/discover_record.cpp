@@ -172,7 +172,8 @@ std::string discovery_json(const DiscoveryRecord& record) {
                    {"left_over", shape_json(found.evidence.rest_shapes)}};
   root["isolability"] = isolability_json(found.forward, found.isolability);
   root["detectable"] = detectable_json(found.forward, found.isolability);
-  root["next_experiments"] = ordered_json::array();
+  root["next_experiments"] = next_experiments_json(record.proposal);
+  root["next"] = proposal_json(record.proposal);
   root["not_tried"] = ordered_json::array();
   for (const auto& [id, why] : found.refused) root["not_tried"].push_back({{"id", id}, {"why", why}});
   root["notes"] = record.notes;
