@@ -175,6 +175,7 @@ int plan_coupons(const DiscoverOptions& options) {
                    options.run.force);
   folder.write("inputs/design.csv", read_text_file(options.design));
   folder.write("discover/plan.json", plan_json(record));
+  folder.write("discover/plan.html", plan_html(record));
   folder.write("discover/design.csv", design_csv(record.proposed.cells));
   folder.close(a_case, {});
   if (options.run.print) print(record, folder.path());

@@ -37,5 +37,7 @@ PlanRecord plan_campaign_in(const Case& a_case, const std::filesystem::path& des
 
 /// discover/plan.json (docs/discover-plan.md lists its keys).
 std::string plan_json(const PlanRecord& record);
+/// discover/plan.html: the same for people.
+std::string plan_html(const PlanRecord& record);
 
 }  // namespace heddle::pipeline

@@ -189,7 +189,7 @@ TEST_CASE("a plan leaves the same files twice, and its design can be planned aga
       head + "16.6,1500,85,180,10\n83.3,1500,85,180,10\n16.6,4000,85,180,60\n16.6,1500,140,180,10\n");
   for (const char* name : {"a", "b"})
     REQUIRE(pipeline::discover_case(plan_options(scratch / name, scratch / "small.csv")) == 0);
-  for (const char* file : {"discover/plan.json", "discover/design.csv"})
+  for (const char* file : {"discover/plan.json", "discover/plan.html", "discover/design.csv"})
     CHECK(read_text_file(scratch / "a" / file) == read_text_file(scratch / "b" / file));
   const auto json = nlohmann::json::parse(read_text_file(scratch / "a" / "discover/plan.json"));
   CHECK(json["given"]["pulls"] == 20);
