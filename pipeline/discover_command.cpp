@@ -10,6 +10,7 @@
 #include "friction/calibration/model_numbers.h"
 #include "friction/parameters.h"
 #include "pipeline/config_tree.h"
+#include "pipeline/discover_report.h"
 #include "pipeline/run_folder.h"
 #include "pipeline/stages.h"
 
@@ -270,6 +271,7 @@ int discover_case(const DiscoverOptions& options) {
                    options.run.force);
   folder.write("inputs/coupons.csv", read_text_file(options.data));
   folder.write("discover/report.json", discovery_json(record));
+  folder.write("discover/report.html", discover_html(record));
   folder.write("discover/patched.yaml", resolved_yaml(discovered_settings(a_case, record)));
   folder.write("discover/gap.csv", gap_csv(record));
   folder.write("discover/shape.csv", shape_csv(record));

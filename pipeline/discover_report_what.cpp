@@ -1,0 +1,234 @@
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "pipeline/calibration_record.h"
+#include "pipeline/chart.h"
+#include "pipeline/discover_report_parts.h"
+#include "pipeline/discover_report_pictures.h"
+#include "pipeline/page.h"
+#include "pipeline/report_figures.h"
+
+namespace heddle::pipeline {
+
+namespace {
+
+using discover::Answer;
+using discover::Scored;
+
+std::string probability_text(double probability) {
+  if (probability > 0.9995) return "> 0.999";
+  if (probability < 0.0005) return "< 0.001";
+  return fmt::format("{:.3f}", probability);
+}
+
+std::string ranking_figure(const DiscoveryPage& page) {
+  BarPicture picture;
+  picture.label = "ln Bayes factor against nothing missing, and probability, of the best explanations";
+  picture.quantity = "ln Bayes factor against nothing missing";
+  picture.mark = page.record.question.search.bayes_factor;
+  picture.mark_words = "needed of a name";
+  picture.width = full_width;
+  for (const Scored& one : page.found.result.scored) {
+    if (picture.bars.size() == 10) break;
+    const bool given = page.named() && one.fit.hypothesis == page.found.decision.named;
+    std::string name = page.name_of(one, " + ");
+    // A wrong label names two conditions, too long for a bar.
+    if (const std::size_t detail = name.find(" ("); detail != std::string::npos) name.erase(detail);
+    picture.bars.push_back({std::move(name), one.fit.log_evidence - page.found.result.log_evidence_none,
+                            fmt::format("probability {}", probability_text(one.probability)), given});
+  }
+  const std::size_t all = page.found.result.scored.size();
+  return figure(
+      draw(picture),
+      fmt::format("The best {} of {} explanations tried. The length is how much better the data speak for it "
+                  "than for nothing missing, its freedom paid for; the probability weighs in how many names "
+                  "there are. An explanation of two effects must beat each of them alone.",
+                  picture.bars.size(), all));
+}
+
+/// A number as fitted, with its 95 % interval and what was believed before.
+struct NumberRow {
+  std::string key, value, interval, prior;
+};
+
+std::vector<NumberRow> numbers_of(const DiscoveryPage& page, const discover::MapFit& fit) {
+  std::vector<NumberRow> rows;
+  Eigen::Index at = 0;
+  for (const discover::Unknown& unknown : page.found.forward.baseline) at += unknown.prior.is_free() ? 1 : 0;
+  for (const std::size_t effect : fit.hypothesis)
+    for (const discover::Unknown& unknown : page.found.forward.candidates[effect].numbers) {
+      if (!unknown.prior.is_free()) continue;
+      const auto text = [&](double z) { return quantity_text(unknown.prior.value_at(z), unknown.unit, 3); };
+      const auto [low, high] = unknown.prior.bounds();
+      const double reach = 1.96 * std::sqrt(fit.covariance(at, at));
+      rows.push_back({unknown.key, text(fit.z[at]),
+                      fmt::format("{} to {}", text(std::max(fit.z[at] - reach, low)),
+                                  text(std::min(fit.z[at] + reach, high))),
+                      discover::write_prior(unknown.prior, unknown.unit)});
+      ++at;
+    }
+  return rows;
+}
+
+std::string number_table(const DiscoveryPage& page) {
+  const Scored* best = page.best();
+  if (best == nullptr || page.found.decision.answer == Answer::no_gap) return "";
+  std::vector<std::vector<std::string>> rows;
+  for (const NumberRow& row : numbers_of(page, best->exact))
+    rows.push_back({row.key, row.value, row.interval, row.prior});
+  if (rows.empty()) return "";
+  std::string forms;
+  for (const std::size_t effect : best->fit.hypothesis) {
+    const discover::Candidate& candidate = page.found.forward.candidates[effect];
+    forms += fmt::format("<p>{}: <code>{}</code>. {}.</p>\n", escape(spaced(candidate.id)),
+                         escape(candidate.form), escape(candidate.source));
+  }
+  return fmt::format("<h3>Its numbers{}</h3>\n", page.named() ? "" : ", if the best name were right") +
+         forms + table({"Number", "Value", "95 % interval", "Prior"}, rows);
+}
+
+// ---- fingerprints
+
+Axis axis_of(const Levels& levels) {
+  std::string quantity = levels.name;
+  quantity[0] = static_cast<char>(quantity[0] - 'a' + 'A');
+  Axis axis{quantity, levels.unit, levels.logarithmic ? Scale::logarithmic : Scale::linear};
+  const double low = levels.at.front(), high = levels.at.back();
+  // A logarithmic axis over less than a factor of five would have one tick or none.
+  if (levels.logarithmic && high < 5.0 * low) axis.scale = Scale::linear;
+  const bool log = axis.scale == Scale::logarithmic;
+  axis.low = log ? low * std::pow(high / low, -0.05) : low - 0.05 * (high - low);
+  axis.high = log ? high * std::pow(high / low, 0.05) : high + 0.05 * (high - low);
+  return axis;
+}
+
+std::string cut_words(const DiscoveryPage& page, const Cut& cut) {
+  return cut.at ? fmt::format("{}, at {}", page.levels[cut.along].name,
+                              page.levels[cut.at->first].words(cut.at->second))
+                : fmt::format("{}, all conditions", page.levels[cut.along].name);
+}
+
+Canvas fingerprint_chart(const DiscoveryPage& page, const Cut& cut) {
+  const Levels& along = page.levels[cut.along];
+  LineChart chart;
+  chart.x = axis_of(along);
+  chart.y = {"Force over the baseline's, less 1", "%"};
+  chart.width = half_width;
+  chart.height = 320.0;
+  chart.label_room = 158.0;
+  chart.label =
+      fmt::format("Measured gap and what the best explanations add, along {}", cut_words(page, cut));
+  const std::vector<WeightedMean> measured = means_along(page.gap, page.levels, cut, page.gap.gap);
+  Series dots{"measured", {}, {}, true};
+  Ribbon noise;
+  for (std::size_t level = 0; level < along.count(); ++level) {
+    if (measured[level].cells == 0) continue;
+    const double reach = 1.96 * measured[level].noise;
+    dots.x.push_back(along.at[level]);
+    dots.y.push_back(100.0 * std::expm1(measured[level].value));
+    noise.x.push_back(along.at[level]);
+    noise.low.push_back(100.0 * std::expm1(measured[level].value - reach));
+    noise.high.push_back(100.0 * std::expm1(measured[level].value + reach));
+  }
+  const std::vector<double> at = dots.x;
+  chart.ribbons.push_back(std::move(noise));
+  chart.series.push_back(std::move(dots));
+  for (const Scored* rival : page.rivals) {
+    const std::vector<WeightedMean> means =
+        means_along(page.gap, page.levels, cut, added_by(page.gap, *rival));
+    std::string name = page.name_of(*rival, " + ");
+    if (name.size() > 25) name = name.substr(0, 23) + "…";  // its whole name is under the picture
+    Series line{std::move(name), at, {}};
+    for (const WeightedMean& mean : means)
+      if (mean.cells > 0) line.y.push_back(100.0 * std::expm1(mean.value));
+    chart.series.push_back(std::move(line));
+  }
+  return draw(chart);
+}
+
+std::string fingerprints(const DiscoveryPage& page) {
+  if (page.rivals.empty() || page.levels.empty()) return "";
+  const Eigen::VectorXd best = added_by(page.gap, *page.rivals[0]);
+  const auto where_it_acts = cut_between(page.gap, page.levels, best, Eigen::VectorXd::Zero(best.size()));
+  std::vector<std::string> figures;
+  const std::string band = "The band is the noise of the measured means (95 %).";
+  if (where_it_acts)
+    figures.push_back(
+        figure(fingerprint_chart(page, *where_it_acts),
+               fmt::format("Where {} does most, along {}. {}", page.name_of(*page.rivals[0], " + "),
+                           cut_words(page, *where_it_acts), band)));
+  if (page.rivals.size() > 1) {
+    const auto apart = cut_between(page.gap, page.levels, best, added_by(page.gap, *page.rivals[1]));
+    if (apart && !(where_it_acts && apart->along == where_it_acts->along && apart->at == where_it_acts->at))
+      figures.push_back(
+          figure(fingerprint_chart(page, *apart),
+                 fmt::format("Where {} and {} differ most, {:.1f} standard deviations of noise, along {}. {}",
+                             page.name_of(*page.rivals[0], " + "), page.name_of(*page.rivals[1], " + "),
+                             std::sqrt(apart->separation), cut_words(page, *apart), band)));
+  }
+  if (figures.empty()) return "";
+  return "<h3>Fingerprints</h3>\n<p>The measured gap, and what each of the best explanations adds to the "
+         "baseline. The "
+         "right one follows the dots everywhere; a look-alike leaves them somewhere.</p>\n" +
+         pair(figures[0], figures.size() > 1 ? figures[1] : "");
+}
+
+// ---- a gap without a name
+
+std::string shape_figure(const DiscoveryPage& page, const std::vector<discover::Shape>& shapes,
+                         std::string_view what) {
+  if (shapes.empty()) return "";
+  const std::vector<discover::ShapePoint> curve = curve_of(shapes.front(), page.found.training);
+  if (curve.size() < 2) return "";
+  LineChart chart;
+  const std::string over = spaced(curve.front().over);
+  const auto levels = std::ranges::find(page.levels, over, &Levels::name);
+  if (levels != page.levels.end())
+    chart.x = axis_of(*levels);
+  else
+    chart.x = {"Slip", "mm", Scale::logarithmic};
+  chart.y = {"Measured force over the model's, less 1", "%"};
+  chart.label = fmt::format("Smooth gap over {}", spaced(shapes.front().over));
+  chart.width = full_width;
+  chart.height = 320.0;
+  Series line;
+  Ribbon band;
+  double force = 0.0;
+  for (const discover::ShapePoint& point : curve) {
+    line.x.push_back(point.at);
+    line.y.push_back(100.0 * std::expm1(point.gap));
+    band.x.push_back(point.at);
+    band.low.push_back(100.0 * std::expm1(point.low));
+    band.high.push_back(100.0 * std::expm1(point.high));
+    if (std::abs(point.force) > std::abs(force)) force = point.force;
+  }
+  chart.series.push_back(std::move(line));
+  chart.ribbons.push_back(std::move(band));
+  return fmt::format("<h3>{}</h3>\n", what) +
+         figure(
+             draw(chart),
+             fmt::format(
+                 "A smooth gap over {}, ln Bayes factor {:.1f}, up to {} N, with its 95 % band; shape.csv "
+                 "has its "
+                 "points. It holds between the conditions that were measured and says nothing beyond them.",
+                 spaced(shapes.front().over), shapes.front().log_evidence, significant(force, 2)));
+}
+
+std::string shape_part(const DiscoveryPage& page) {
+  if (page.found.decision.answer == Answer::unknown)
+    return shape_figure(page, page.found.evidence.gap_shapes, "The shape that has no name");
+  if (page.found.decision.answer == Answer::named_incomplete)
+    return shape_figure(page, page.found.evidence.rest_shapes, "What the name leaves over");
+  return "";
+}
+
+}  // namespace
+
+std::string what_section(const DiscoveryPage& page) {
+  return section("What it is",
+                 shape_part(page) + ranking_figure(page) + number_table(page) + fingerprints(page));
+}
+
+}  // namespace heddle::pipeline
