@@ -148,6 +148,7 @@ std::vector<Verdict> basis(const DiscoveryPage& page) {
                                found.contrasts.size(), found.result.signatures.size(),
                                spaced(found.gate_from), found.gate_statistic, p_text(found.evidence.gate_p),
                                gap ? "" : ", so there is no gap to explain")});
+  if (!gap) return verdicts;  // the decision's reason says the same
   for (const std::string& reason : found.decision.reasons) verdicts.push_back({Tone::note, reason});
   return verdicts;
 }
@@ -170,7 +171,7 @@ std::string condition_words(const DiscoveryPage& page, const discover::CouponCel
 }
 
 std::string p_text(double p) {
-  return p < 0.0015 ? "≤ 0.001" : fmt::format("{:.2g}", p);
+  return p < 0.0015 ? "≤ 0.001" : p < 0.01 ? fmt::format("{:.3f}", p) : fmt::format("{:.2f}", p);
 }
 
 bool DiscoveryPage::named() const {

@@ -3,11 +3,10 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cctype>
 #include <cmath>
 #include <map>
 #include <numbers>
-#include <numeric>
-#include <set>
 
 #include "pipeline/painter.h"
 
@@ -148,6 +147,16 @@ Eigen::VectorXd added_by(const GapTable& table, const discover::Scored& scored) 
 
 std::string Levels::words(std::size_t level) const {
   return fmt::format("{} {}{}{}", name, text[level], unit == "°" ? "" : " ", unit);
+}
+
+std::string Levels::capital() const {
+  std::string word = name;
+  word[0] = static_cast<char>(std::toupper(static_cast<unsigned char>(word[0])));
+  return word;
+}
+
+std::string Levels::title() const {
+  return fmt::format("{} ({})", capital(), unit);
 }
 
 std::vector<Levels> all_levels(const GapTable& table, std::size_t most) {

@@ -37,6 +37,8 @@ struct Levels {
 
   std::size_t count() const { return at.size(); }
   std::string words(std::size_t level) const;  ///< "tool temperature 85 °C"
+  std::string capital() const;                 ///< "Tool temperature"
+  std::string title() const;                   ///< "Tool temperature (°C)"
 };
 
 /// Levels of every factor that varies, without the day; and of the slip where there are histories.

@@ -68,10 +68,11 @@ Canvas draw(const MatrixPicture& picture) {
         canvas.disc({x + 0.5 * column, middle}, 1.2, "bar");
         continue;
       }
-      canvas.polygon(box(x + 1, low - row_height + 1, x + column - 1, low - 1),
-                     signed_fill(field.value / picture.full));
+      const bool within_noise = std::abs(field.value) < 1.96 * field.noise;
+      const double share = (within_noise ? 0.4 : 1.0) * field.value / picture.full;
+      canvas.polygon(box(x + 1, low - row_height + 1, x + column - 1, low - 1), signed_fill(share));
       canvas.text({x + 0.5 * column, middle + 4}, signed_percent(field.value), Anchor::middle,
-                  std::abs(field.value) < 1.96 * field.noise ? "faint" : "title");
+                  within_noise ? "faint" : "title");
     }
   }
   draw_signs(canvas, left + 140.0, bottom + 57.0, picture.full);
@@ -115,7 +116,7 @@ Canvas draw(const BeforeAfterPicture& picture) {
   const auto count = static_cast<double>(picture.rows.size());
   const double row_height = std::clamp(620.0 / std::max(count, 1.0), 2.5, 24.0);
   const bool named = row_height >= 13.0;
-  const double left = named ? 320.0 : 20.0, right = picture.width - 20.0, top = 44.0;
+  const double left = named ? 430.0 : 20.0, right = picture.width - 20.0, top = 44.0;
   const double bottom = top + row_height * count;
   Canvas canvas(picture.width, bottom + 46.0, picture.label);
   double high = 0.0;
@@ -135,9 +136,9 @@ Canvas draw(const BeforeAfterPicture& picture) {
   const double radius = std::clamp(0.22 * row_height, 1.2, 4.5);
   y = top + 0.5 * row_height;
   for (const BeforeAfter& row : picture.rows) {
-    canvas.line({at(row.before), y}, {at(row.after), y}, row.after <= row.before ? "axis" : "line s1");
+    canvas.line({at(row.before), y}, {at(row.after), y}, "axis");
     canvas.disc({at(row.before), y}, radius, "hollow");
-    canvas.disc({at(row.after), y}, radius, "dot s0");
+    canvas.disc({at(row.after), y}, radius, row.after <= row.before ? "dot s0" : "dot s1");
     if (named) canvas.text({left - 12, y + 4}, row.name, Anchor::end, "faint");
     y += row_height;
   }
@@ -146,8 +147,10 @@ Canvas draw(const BeforeAfterPicture& picture) {
   canvas.text({left + 16, 22.0}, "before", Anchor::start, "label");
   canvas.disc({left + 86, 18.0}, 4.5, "dot s0");
   canvas.text({left + 96, 22.0}, "after", Anchor::start, "label");
-  canvas.polygon(box(left + 154, 12.0, left + 174, 24.0), "ribbon");
-  canvas.text({left + 181, 22.0}, "noise alone", Anchor::start, "label");
+  canvas.disc({left + 156, 18.0}, 4.5, "dot s1");
+  canvas.text({left + 166, 22.0}, "after, further off", Anchor::start, "label");
+  canvas.polygon(box(left + 288, 12.0, left + 308, 24.0), "ribbon");
+  canvas.text({left + 315, 22.0}, "noise alone", Anchor::start, "label");
   canvas.text({right, bottom + 38.0},
               "Model off the measured force (% of it, root mean square over the pull)", Anchor::end, "faint");
   return canvas;

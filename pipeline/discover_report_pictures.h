@@ -15,7 +15,7 @@ struct MatrixField {
   int cells = 0;       ///< conditions behind it; 0: never measured, drawn empty
 };
 
-/// A signed share over two factors: coloured fields with numbers, faint where noise alone may give them.
+/// A signed share over two factors: coloured fields with numbers, pale where noise alone may give them.
 struct MatrixPicture {
   std::string label;         ///< what the picture shows, for readers who cannot see it
   std::string across, down;  ///< factors with their units

@@ -26,8 +26,10 @@ Verdict shrink_verdict(const DiscoveryPage& page) {
       "leaves {:.1f} %. The gap shrinks by {:.0f} % (95 % interval {:.0f} to {:.0f} %)",
       gap.conditions, 100.0 * gap.before, 100.0 * gap.after, 100.0 * gap.floor, 100.0 * gap.shrink,
       100.0 * gap.shrink_low, 100.0 * gap.shrink_high);
-  const std::string closed =
-      gap.closed > 0.0 ? fmt::format(": {:.0f} % of what could be closed.", 100.0 * gap.closed) : ".";
+  const std::string closed = gap.closed >= 1.0 ? std::string(": all of what could be closed.")
+                             : gap.closed > 0.0
+                                 ? fmt::format(": {:.0f} % of what could be closed.", 100.0 * gap.closed)
+                                 : ".";
   if (gap.shrink_low > 0.0) return {Tone::holds, numbers + closed};
   if (gap.shrink > 0.0)
     return {Tone::attention, numbers + closed + " The interval holds zero: so few conditions prove nothing."};

@@ -34,8 +34,9 @@ std::string ranking_figure(const DiscoveryPage& page) {
     if (picture.bars.size() == 10) break;
     const bool given = page.named() && one.fit.hypothesis == page.found.decision.named;
     std::string name = page.name_of(one, " + ");
-    // A wrong label names two conditions, too long for a bar.
+    // A wrong label names two conditions, too long for a bar: of several pairs only the best is shown.
     if (const std::size_t detail = name.find(" ("); detail != std::string::npos) name.erase(detail);
+    if (std::ranges::count(picture.bars, name, &Bar::name) > 0) continue;
     picture.bars.push_back({std::move(name), one.fit.log_evidence - page.found.result.log_evidence_none,
                             fmt::format("probability {}", probability_text(one.probability)), given});
   }
@@ -92,9 +93,7 @@ std::string number_table(const DiscoveryPage& page) {
 // ---- fingerprints
 
 Axis axis_of(const Levels& levels) {
-  std::string quantity = levels.name;
-  quantity[0] = static_cast<char>(quantity[0] - 'a' + 'A');
-  Axis axis{quantity, levels.unit, levels.logarithmic ? Scale::logarithmic : Scale::linear};
+  Axis axis{levels.capital(), levels.unit, levels.logarithmic ? Scale::logarithmic : Scale::linear};
   const double low = levels.at.front(), high = levels.at.back();
   // A logarithmic axis over less than a factor of five would have one tick or none.
   if (levels.logarithmic && high < 5.0 * low) axis.scale = Scale::linear;
@@ -117,7 +116,7 @@ Canvas fingerprint_chart(const DiscoveryPage& page, const Cut& cut) {
   chart.y = {"Force over the baseline's, less 1", "%"};
   chart.width = half_width;
   chart.height = 320.0;
-  chart.label_room = 158.0;
+  chart.label_room = 178.0;
   chart.label =
       fmt::format("Measured gap and what the best explanations add, along {}", cut_words(page, cut));
   const std::vector<WeightedMean> measured = means_along(page.gap, page.levels, cut, page.gap.gap);
@@ -139,7 +138,8 @@ Canvas fingerprint_chart(const DiscoveryPage& page, const Cut& cut) {
     const std::vector<WeightedMean> means =
         means_along(page.gap, page.levels, cut, added_by(page.gap, *rival));
     std::string name = page.name_of(*rival, " + ");
-    if (name.size() > 25) name = name.substr(0, 23) + "…";  // its whole name is under the picture
+    if (const std::size_t detail = name.find(" ("); detail != std::string::npos) name.erase(detail);
+    if (name.size() > 24) name = name.substr(0, 22) + "…";  // the whole name is under the picture
     Series line{std::move(name), at, {}};
     for (const WeightedMean& mean : means)
       if (mean.cells > 0) line.y.push_back(100.0 * std::expm1(mean.value));
@@ -177,43 +177,79 @@ std::string fingerprints(const DiscoveryPage& page) {
 
 // ---- a gap without a name
 
-std::string shape_figure(const DiscoveryPage& page, const std::vector<discover::Shape>& shapes,
-                         std::string_view what) {
-  if (shapes.empty()) return "";
-  const std::vector<discover::ShapePoint> curve = curve_of(shapes.front(), page.found.training);
-  if (curve.size() < 2) return "";
+/// A shape over two coordinates as a matrix, one over a single one as a curve.
+Canvas shape_matrix(const DiscoveryPage& page, const discover::Shape& shape, const Levels& x,
+                    const Levels& y) {
+  MatrixPicture picture;
+  picture.label = fmt::format("Smooth gap over {} and {}, in per cent of the force", x.name, y.name);
+  picture.across = x.title();
+  picture.down = y.title();
+  picture.columns = x.text;
+  picture.rows = y.text;
+  picture.width = full_width;
+  double largest = 0.01;
+  for (std::size_t row = 0; row < y.count(); ++row)
+    for (std::size_t column = 0; column < x.count(); ++column) {
+      const Eigen::VectorXd weights = weights_of(
+          page.gap, "whole pull", [&](std::size_t i) { return x.of[i] == column && y.of[i] == row; });
+      // The shape's own band takes the place of noise: it is known no better than that.
+      picture.fields.push_back(
+          {shape.mean.dot(weights), shape.sd.dot(weights), mean_of(page.gap, shape.mean, weights).cells});
+      largest = std::max(largest, std::abs(picture.fields.back().value));
+    }
+  picture.full = 0.01 * std::ceil(100.0 * largest);
+  return draw(picture);
+}
+
+Canvas shape_curve(const DiscoveryPage& page, const discover::Shape& shape) {
   LineChart chart;
-  const std::string over = spaced(curve.front().over);
-  const auto levels = std::ranges::find(page.levels, over, &Levels::name);
+  const std::vector<discover::ShapePoint> curve = curve_of(shape, page.found.training);
+  const auto levels = std::ranges::find(page.levels, spaced(shape.over), &Levels::name);
   if (levels != page.levels.end())
     chart.x = axis_of(*levels);
   else
     chart.x = {"Slip", "mm", Scale::logarithmic};
   chart.y = {"Measured force over the model's, less 1", "%"};
-  chart.label = fmt::format("Smooth gap over {}", spaced(shapes.front().over));
+  chart.label = fmt::format("Smooth gap over {}", spaced(shape.over));
   chart.width = full_width;
   chart.height = 320.0;
   Series line;
   Ribbon band;
-  double force = 0.0;
   for (const discover::ShapePoint& point : curve) {
     line.x.push_back(point.at);
     line.y.push_back(100.0 * std::expm1(point.gap));
     band.x.push_back(point.at);
     band.low.push_back(100.0 * std::expm1(point.low));
     band.high.push_back(100.0 * std::expm1(point.high));
-    if (std::abs(point.force) > std::abs(force)) force = point.force;
   }
   chart.series.push_back(std::move(line));
   chart.ribbons.push_back(std::move(band));
+  return draw(chart);
+}
+
+std::string shape_figure(const DiscoveryPage& page, const std::vector<discover::Shape>& shapes,
+                         std::string_view what) {
+  if (shapes.empty()) return "";
+  const discover::Shape& shape = shapes.front();
+  const std::string over = spaced(shape.over);
+  const std::size_t cross = over.find(" x ");
+  const auto levels_named = [&](const std::string& name) {
+    return std::ranges::find(page.levels, name, &Levels::name);
+  };
+  const auto x = levels_named(over.substr(0, cross));
+  const auto y = cross == std::string::npos ? page.levels.end() : levels_named(over.substr(cross + 3));
+  const bool is_matrix = x != page.levels.end() && y != page.levels.end();
+  const double largest = shape.mean.cwiseAbs().maxCoeff();
   return fmt::format("<h3>{}</h3>\n", what) +
          figure(
-             draw(chart),
+             is_matrix ? shape_matrix(page, shape, *x, *y) : shape_curve(page, shape),
              fmt::format(
-                 "A smooth gap over {}, ln Bayes factor {:.1f}, up to {} N, with its 95 % band; shape.csv "
-                 "has its "
+                 "A smooth gap over {}, ln Bayes factor {:.1f}, up to {:.1f} % of the force. {}shape.csv has "
+                 "its "
                  "points. It holds between the conditions that were measured and says nothing beyond them.",
-                 spaced(shapes.front().over), shapes.front().log_evidence, significant(force, 2)));
+                 over, shape.log_evidence, 100.0 * largest,
+                 is_matrix ? "Bold: beyond its 95 % band. "
+                           : "The band (95 %) holds the level too, which the baseline could take up. "));
 }
 
 std::string shape_part(const DiscoveryPage& page) {
@@ -227,6 +263,7 @@ std::string shape_part(const DiscoveryPage& page) {
 }  // namespace
 
 std::string what_section(const DiscoveryPage& page) {
+  if (page.found.decision.answer == Answer::no_gap) return section("What was tried", ranking_figure(page));
   return section("What it is",
                  shape_part(page) + ranking_figure(page) + number_table(page) + fingerprints(page));
 }

@@ -1,7 +1,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cctype>
 #include <cmath>
 
 #include "pipeline/chart.h"
@@ -31,7 +30,8 @@ std::string seen_in(const Location& location) {
                  : fmt::format("is too {}, in all conditions", above ? "high" : "low");
   if (const std::size_t sign = location.factor.find(" = "); sign != std::string::npos) {
     std::string level = location.factor.substr(sign + 3);
-    if (const std::size_t unit = level.find("degC"); unit != std::string::npos) level.replace(unit, 4, "°C");
+    if (const std::size_t unit = level.find(" deg"); unit != std::string::npos)
+      level.replace(unit, std::string::npos, level.ends_with('C') ? " °C" : "°");
     return trend ? fmt::format("{} along the pull where {} is {}, more than elsewhere", goes, factor, level)
                  : fmt::format("is {} where {} is {} than elsewhere", above ? "higher" : "lower", factor,
                                level);
@@ -48,7 +48,8 @@ std::string seen_in(const Location& location) {
 std::string location_table(const DiscoveryPage& page) {
   std::vector<std::vector<std::string>> rows;
   for (const Location& location : page.found.locations) {
-    if (rows.size() == 10) break;
+    // What noise alone may give is shown only so far that a reader sees how it goes on.
+    if (rows.size() == 10 || (rows.size() >= 3 && location.p_value > 0.05)) break;
     rows.push_back(
         {seen_in(location), location.segment,
          fmt::format("{}{:.1f}", location.statistic < 0.0 ? "−" : "+", std::abs(location.statistic)),
@@ -88,20 +89,21 @@ MapChoice map_of(const DiscoveryPage& page, std::size_t across, std::size_t down
   return map;
 }
 
-std::string capital(std::string text) {
-  text[0] = static_cast<char>(std::toupper(static_cast<unsigned char>(text[0])));
-  return text;
-}
-
-std::string title(const Levels& levels) {
-  return fmt::format("{} ({})", capital(levels.name), levels.unit);
-}
-
 /// Where the strongest place of the gap is along the pull; the whole pull where nothing is beyond noise.
 std::string segment_of_maps(const DiscoveryPage& page) {
   if (page.found.campaign.stretches < 2 || page.found.locations.empty()) return "whole pull";
   const Location& strongest = page.found.locations.front();
   return strongest.p_value < 0.05 ? strongest.segment : "whole pull";
+}
+
+/// Values of the levels; where ranges would run into one another, their means.
+std::vector<std::string> column_names(const Levels& levels, double width) {
+  const double room = 0.8 * width / static_cast<double>(levels.count());
+  const auto fits = [&](const std::string& text) { return 7.0 * static_cast<double>(text.size()) < room; };
+  if (std::ranges::all_of(levels.text, fits)) return levels.text;
+  std::vector<std::string> names;
+  for (const double at : levels.at) names.push_back(plain_number(at, 3));
+  return names;
 }
 
 std::string of_segment(std::string_view segment) {
@@ -144,8 +146,9 @@ std::string maps(const DiscoveryPage& page) {
     const auto empty = std::ranges::count(map.fields, 0, &MatrixField::cells);
     figures.push_back(figure(
         draw(MatrixPicture{fmt::format("Gap over {} and {}, in per cent of the force", x.name, y.name),
-                           title(x), title(y), x.text, y.text, map.fields, full, half_width}),
-        fmt::format("{} against {}.{}", capital(y.name), x.name,
+                           x.title(), y.title(), column_names(x, half_width), y.text, map.fields, full,
+                           half_width}),
+        fmt::format("{} against {}.{}", y.capital(), x.name,
                     empty == 0
                         ? std::string()
                         : fmt::format(" {} of {} pairs were never measured.", empty, map.fields.size()))));
@@ -153,7 +156,7 @@ std::string maps(const DiscoveryPage& page) {
   std::string out = fmt::format(
       "<h3>Maps of the gap</h3>\n<p>Measured force over that of the fitted baseline, in per cent, mean {}. "
       "Bold: beyond "
-      "noise (95 %); faint: noise alone may give it; a dot: not measured together. {}Held-out conditions are "
+      "noise (95 %); pale: noise alone may give it; a dot: not measured together. {}Held-out conditions are "
       "not in "
       "it.</p>\n",
       of_segment(segment),
@@ -193,10 +196,11 @@ std::string slip_figure(const DiscoveryPage& page) {
   Ribbon noise{slip.at, std::vector<double>(slip.count(), 0.0), std::vector<double>(slip.count(), 0.0)};
   const std::size_t count = factor != nullptr ? factor->count() : 1;
   for (std::size_t level = 0; level < count; ++level) {
-    Series line{
-        factor != nullptr ? fmt::format("{} {}", factor->text[level], factor->unit) : "all conditions",
-        {},
-        {}};
+    Series line{factor != nullptr
+                    ? fmt::format("{}{}{}", factor->text[level], factor->unit == "°" ? "" : " ", factor->unit)
+                    : "all conditions",
+                {},
+                {}};
     for (std::size_t k = 0; k < slip.count(); ++k) {
       const WeightedMean mean =
           mean_of(page.gap, page.gap.gap, weights_of(page.gap, "whole pull", [&](std::size_t i) {
@@ -225,7 +229,9 @@ std::string slip_figure(const DiscoveryPage& page) {
 }  // namespace
 
 std::string where_section(const DiscoveryPage& page) {
-  return section("Where model and measurement part", location_table(page) + maps(page) + slip_figure(page));
+  const bool gap = page.found.decision.answer != discover::Answer::no_gap;
+  return section(gap ? "Where model and measurement part" : "Where they could have parted",
+                 location_table(page) + maps(page) + slip_figure(page));
 }
 
 }  // namespace heddle::pipeline
