@@ -251,9 +251,17 @@ Settings discovered_settings(const Case& a_case, const DiscoveryRecord& record) 
   const discover::Scored* scored = named ? found.result.find(found.decision.named) : nullptr;
   const discover::MapFit& fit = scored != nullptr ? scored->exact : found.result.baseline;
   const friction::Model patched = discover::patched_model(record.base, found.forward, fit.trial);
+  // An effect of the user's own may move a number that every model has.
+  const auto of_named = [&](const std::string& key) {
+    return std::ranges::any_of(fit.hypothesis, [&](std::size_t effect) {
+      return std::ranges::count(found.forward.candidates[effect].numbers, key, &discover::Unknown::key) > 0;
+    });
+  };
   for (const friction::ModelNumber& number : friction::numbers_of(patched)) {
     const bool of_law = number.key.starts_with("friction.");
-    const bool moved = std::ranges::count(record.question.baseline, number.key, &discover::Unknown::key) > 0;
+    const bool moved =
+        std::ranges::count(record.question.baseline, number.key, &discover::Unknown::key) > 0 ||
+        of_named(number.key);
     const bool of_effect = number.key.starts_with("effects.");
     if (of_law || moved || of_effect) set_number(settings, number.key, number.value);
     if (of_effect) settings.blocks.insert(number.key.substr(0, number.key.rfind('.')));

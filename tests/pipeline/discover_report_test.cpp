@@ -264,3 +264,32 @@ TEST_CASE("a fault of the rig is told as one, and the model stays as it is", "[p
   CHECK_THAT(page, Contains("The measurement is at fault, not the model"));
   CHECK_THAT(page, Contains("the model stays as it is"));
 }
+
+TEST_CASE("an effect of the user's own that moves a number of the resin is in the patched case",
+          "[pipeline][discover][report]") {
+  const pipeline::Case a_case = pipeline::read_case(source / "configs/discover/friction.yaml");
+  pipeline::DiscoveryRecord record = table4_record();
+  std::erase_if(record.question.baseline,
+                [](const discover::Unknown& number) { return number.key == "resin.activation_energy"; });
+  record.question.effects = {
+      discover::read_effect("id: other_grade\nstage: film\nterm: \"\"\nform: E of the grade\nparameters:\n"
+                            "  energy: {unit: kJ/mol, key: resin.activation_energy, prior: \"normal, mean 42 "
+                            "kJ/mol, sd 15 kJ/mol\", off: 42 kJ/mol}\n"
+                            "look_alikes: []\nsource: prior\n",
+                            "other_grade.yaml")};
+  std::string pulls = made_pulls();  // one load colder, where the film's activation energy shows
+  for (std::size_t at; (at = pulls.find(",1500,85,180,")) != std::string::npos;)
+    pulls.replace(at, 13, ",1500,85,160,");
+  const friction::CouponData data =
+      friction::parse_coupons(pulls, "made.csv", {.stretches = 3, .same_stretches = true, .faces = 2});
+  record.findings = discover::discover_in_coupons(record.question, data);
+  REQUIRE(record.findings.forward.candidates.size() == 1);
+  record.findings.decision.named = {0};
+  record.findings.decision.answer = Answer::named;
+  const discover::Trial& trial = record.findings.result.find({0})->exact.trial;
+  const double fitted = trial.effects.at(0).second[0];
+  CHECK(fitted != Approx(42e3).epsilon(1e-6));
+  CHECK(discovered_settings(a_case, record).number("resin.activation_energy") == fitted);
+  record.findings.decision.answer = Answer::one_of;  // no name, no change
+  CHECK(discovered_settings(a_case, record).number("resin.activation_energy") == Approx(42e3));
+}
