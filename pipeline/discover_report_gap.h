@@ -53,6 +53,10 @@ std::vector<std::string> constant_factors(const discover::CouponFindings& findin
 Eigen::VectorXd weights_of(const GapTable& table, std::string_view segment,
                            const std::function<bool(std::size_t point)>& take);
 
+/// Covariance of weighted sums of ln F, from samples and days.
+/// @param weights  points x sums
+Eigen::MatrixXd noise_of(const GapTable& table, const Eigen::MatrixXd& weights);
+
 struct WeightedMean {
   double value = 0.0;
   double noise = 0.0;  ///< standard deviation of the value from samples and days

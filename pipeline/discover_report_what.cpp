@@ -109,12 +109,12 @@ std::string cut_words(const DiscoveryPage& page, const Cut& cut) {
                 : fmt::format("{}, all conditions", page.levels[cut.along].name);
 }
 
-Canvas fingerprint_chart(const DiscoveryPage& page, const Cut& cut) {
+Canvas fingerprint_chart(const DiscoveryPage& page, const Cut& cut, double width) {
   const Levels& along = page.levels[cut.along];
   LineChart chart;
   chart.x = axis_of(along);
   chart.y = {"Force over the baseline's, less 1", "%"};
-  chart.width = half_width;
+  chart.width = width;
   chart.height = 320.0;
   chart.label_room = 178.0;
   chart.label =
@@ -151,28 +151,28 @@ Canvas fingerprint_chart(const DiscoveryPage& page, const Cut& cut) {
 std::string fingerprints(const DiscoveryPage& page) {
   if (page.rivals.empty() || page.levels.empty()) return "";
   const Eigen::VectorXd best = added_by(page.gap, *page.rivals[0]);
-  const auto where_it_acts = cut_between(page.gap, page.levels, best, Eigen::VectorXd::Zero(best.size()));
-  std::vector<std::string> figures;
-  const std::string band = "The band is the noise of the measured means (95 %).";
-  if (where_it_acts)
-    figures.push_back(
-        figure(fingerprint_chart(page, *where_it_acts),
-               fmt::format("Where {} does most, along {}. {}", page.name_of(*page.rivals[0], " + "),
-                           cut_words(page, *where_it_acts), band)));
-  if (page.rivals.size() > 1) {
-    const auto apart = cut_between(page.gap, page.levels, best, added_by(page.gap, *page.rivals[1]));
-    if (apart && !(where_it_acts && apart->along == where_it_acts->along && apart->at == where_it_acts->at))
-      figures.push_back(
-          figure(fingerprint_chart(page, *apart),
-                 fmt::format("Where {} and {} differ most, {:.1f} standard deviations of noise, along {}. {}",
-                             page.name_of(*page.rivals[0], " + "), page.name_of(*page.rivals[1], " + "),
-                             std::sqrt(apart->separation), cut_words(page, *apart), band)));
-  }
-  if (figures.empty()) return "";
-  return "<h3>Fingerprints</h3>\n<p>The measured gap, and what each of the best explanations adds to the "
-         "baseline. The "
-         "right one follows the dots everywhere; a look-alike leaves them somewhere.</p>\n" +
-         pair(figures[0], figures.size() > 1 ? figures[1] : "");
+  const auto acts = cut_between(page.gap, page.levels, best, Eigen::VectorXd::Zero(best.size()));
+  if (!acts) return "";
+  const auto apart = page.rivals.size() > 1
+                         ? cut_between(page.gap, page.levels, best, added_by(page.gap, *page.rivals[1]))
+                         : std::nullopt;
+  const bool two = apart && (apart->along != acts->along || apart->at != acts->at);
+  const std::string name = page.name_of(*page.rivals[0], " + ");
+  const std::string words =
+      "<h3>Fingerprints</h3>\n<p>The measured gap, and what each of the best explanations adds to the "
+      "baseline. The right "
+      "one follows the dots everywhere; a look-alike leaves them somewhere. The band is the noise of the "
+      "measured means (95 "
+      "%).</p>\n";
+  const std::string first = fmt::format("Where {} does most, along {}.", name, cut_words(page, *acts));
+  if (!apart) return words + figure(fingerprint_chart(page, *acts, full_width), first);
+  const std::string second = fmt::format(
+      "{} {} and {} differ most, {:.1f} standard deviations of noise{}.", two ? "Where" : "There also", name,
+      page.name_of(*page.rivals[1], " + "), std::sqrt(apart->separation),
+      two ? fmt::format(", along {}", cut_words(page, *apart)) : std::string());
+  if (!two) return words + figure(fingerprint_chart(page, *acts, full_width), first + " " + second);
+  return words + pair(figure(fingerprint_chart(page, *acts, half_width), first),
+                      figure(fingerprint_chart(page, *apart, half_width), second));
 }
 
 // ---- a gap without a name
