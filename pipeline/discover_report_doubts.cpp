@@ -106,10 +106,12 @@ std::string look_alike_table(const DiscoveryPage& page) {
          table({"Look-alike", "ln Bayes factor against it", "Probability", "Here"}, rows);
 }
 
+constexpr double detectable_factor = 3.0;  // standard deviations
+
 /// The amplitude that stands out by the wanted number of standard deviations, from the strongest signature.
 std::string detectable_table(const DiscoveryPage& page) {
   std::vector<std::vector<std::string>> rows;
-  const double wanted = page.found.detectable_factor;
+  const double wanted = detectable_factor;
   for (const discover::Signature& signature : page.found.result.signatures) {
     const discover::Candidate& candidate = page.found.forward.candidates[signature.effect];
     const double length = signature.direction.norm();
