@@ -60,6 +60,9 @@ std::string unknown_sentence(const DiscoveryPage& page) {
 
 std::string one_of_sentence(const DiscoveryPage& page) {
   const std::string& group = page.found.decision.group;
+  if (page.found.decision.candidate_set.size() < 2)
+    return fmt::format("The model lacks something, probably {}; the data do not bear out one name.",
+                       page.name_of(*page.best()));
   return fmt::format("The model lacks {}; these data cannot say which.", group.empty() ? "an effect" : group);
 }
 
