@@ -70,9 +70,27 @@ void add_export(CLI::App& program, ExportOptions& options) {
 void add_discover(CLI::App& program, DiscoverOptions& options) {
   CLI::App* command =
       add_run(program, "discover", "What the model misses in measured coupons, by name", options.run);
-  command->add_option("--data", options.data, "Table of coupons (CSV); FILE.yaml beside it tells of the rig")
-      ->required()
-      ->check(CLI::ExistingFile);
+  CLI::Option* file = command->get_option("file")->required(false);
+  CLI::Option* data =
+      command
+          ->add_option("--data", options.data, "Table of coupons (CSV); FILE.yaml beside it tells of the rig")
+          ->check(CLI::ExistingFile);
+  CLI::Option* plan = command
+                          ->add_option("--plan", options.run.file,
+                                       "Configuration file (YAML) of coupons that nobody has pulled yet")
+                          ->excludes(file)
+                          ->excludes(data);
+  CLI::Option* design =
+      command
+          ->add_option("--design", options.design, "Planned coupons (CSV): factors, or one row a condition")
+          ->check(CLI::ExistingFile)
+          ->needs(plan);
+  plan->needs(design);
+  command->callback([file, data, plan] {
+    if (plan->count() > 0) return;
+    if (file->count() == 0) throw CLI::RequiredError("file");
+    if (data->count() == 0) throw CLI::RequiredError("--data");
+  });
   command->add_option("--effect", options.own_effects, "Effect file beside the library. May be repeated")
       ->expected(1)
       ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll)

@@ -13,7 +13,7 @@ struct Commands {
   std::function<int(const RunOptions&)> run, weave, friction;
   std::function<int(const CheckOptions&)> check;
   std::function<int(const CalibrateOptions&)> calibrate;
-  std::function<int(const DiscoverOptions&)> discover;
+  std::function<int(const DiscoverOptions&)> discover = {};
   std::function<int(const ExportOptions&)> export_law;
 };
 

@@ -40,6 +40,7 @@ struct CalibrateOptions {
 struct DiscoverOptions {
   RunOptions run;
   std::filesystem::path data;                      ///< measured coupons
+  std::filesystem::path design = {};               ///< planned coupons, in place of measured ones
   std::vector<std::filesystem::path> own_effects;  ///< effect files beside the library
   std::optional<int> seed;
 };
@@ -67,6 +68,7 @@ int weave_case(const RunOptions& options);            ///< unit cell only
 int friction_case(const RunOptions& options);         ///< friction test only
 int calibrate_case(const CalibrateOptions& options);  ///< numbers of the law from measured coupons
 int discover_case(const DiscoverOptions& options);    ///< what the model misses in measured coupons
+int plan_coupons(const DiscoverOptions& options);     ///< what planned coupons could tell
 int export_case(const ExportOptions& options);        ///< the friction law as other programs take it
 int check_file(const CheckOptions& options);          ///< every problem, or the stages and notes
 

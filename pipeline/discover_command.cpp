@@ -3,6 +3,8 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
+#include <numbers>
 
 #include "core/text_file.h"
 #include "core/units.h"
@@ -153,6 +155,8 @@ void demand_variety(const friction::CouponData& data, Problems& problems) {
                       "Vary at least one of speed, load, temperatures, orientation and dwell.", data.file});
 }
 
+}  // namespace
+
 Case read_friction_part(const RunOptions& options) {
   Case a_case = read_case(options.file, options.assignments);
   a_case.stamping.reset();
@@ -164,6 +168,23 @@ Case read_friction_part(const RunOptions& options) {
         "Add `friction:`; configs/discover/friction.yaml shows one.", options.file.string()}});
 }
 
+discover::CouponQuestion question_of(const Case& a_case, const discover::CouponRig& rig,
+                                     const std::vector<fs::path>& own_effects, Problems& problems) {
+  const DiscoverSpec spec = a_case.discover.value_or(DiscoverSpec{});
+  discover::CouponQuestion question;
+  question.base = start_of(*a_case.friction, rig.area);
+  question.rig = rig;
+  question.baseline = baseline_of(question.base, spec, problems);
+  question.effects = library_of(spec, own_effects, problems);
+  question.noise = spec.noise;
+  question.held_out = spec.held_out;
+  question.seed = static_cast<std::uint64_t>(spec.seed);
+  question.tow_pitch = spec.tow_pitch;
+  return question;
+}
+
+namespace {
+
 void set_number(Settings& settings, const std::string& path, double value) {
   const Key* key = find_key(path);
   if (key == nullptr) return;
@@ -173,6 +194,29 @@ void set_number(Settings& settings, const std::string& path, double value) {
   setting.values = {value, 0.0};
   setting.text.clear();
   settings.add(std::move(setting));
+}
+
+/// Without the last digits that the way from degC to K and back leaves.
+double rounded(double value) {
+  return std::round(1e6 * value) / 1e6;
+}
+
+void print_next(const discover::Proposal& proposal) {
+  if (proposal.pulls.empty()) return;
+  std::vector<std::string> rivals;
+  for (const discover::Rival& rival : proposal.rivals)
+    rivals.push_back(fmt::format("{} ({:.2f})", rival.name, rival.probability));
+  fmt::print("Next, to tell {}; the right answer from {:.2f} to {:.2f}:\n", fmt::join(rivals, ", "),
+             proposal.right_before, proposal.right_after);
+  for (const discover::ProposedPull& next : proposal.pulls)
+    fmt::print("  {:g} mm/s, {:g} N, tool {:g} degC, fabric {:g} degC, {:g} deg, rest {:g} s\n",
+               rounded(1e3 * next.cell.pull.velocity), rounded(next.cell.pull.normal_force),
+               rounded(next.cell.pull.tool_temperature - 273.15),
+               rounded(next.cell.pull.fabric_temperature - 273.15),
+               rounded(next.cell.pull.orientation * 180.0 / std::numbers::pi), next.cell.dwell);
+  for (const auto& [i, j] : proposal.inseparable)
+    fmt::print("  no three conditions within the campaign's levels tell {} and {} apart\n",
+               proposal.rivals[i].name, proposal.rivals[j].name);
 }
 
 void print(const DiscoveryRecord& record, const fs::path& folder) {
@@ -196,6 +240,7 @@ void print(const DiscoveryRecord& record, const fs::path& folder) {
         "({:.0f} to {:.0f}).\n",
         100.0 * f.gap->before, 100.0 * f.gap->after, 100.0 * f.gap->floor, 100.0 * f.gap->shrink,
         100.0 * f.gap->shrink_low, 100.0 * f.gap->shrink_high);
+  print_next(record.proposal);
   for (const std::string& note : record.notes) fmt::print("{}\n", note);
   fmt::print("results {}\n", folder.string());
 }
@@ -217,10 +262,8 @@ DiscoveryRecord discover_case_in(const Case& a_case, const fs::path& data,
   if (sidecar.plate_area) record.coupon_rig.rig.plate_area = *sidecar.plate_area;
   record.coupon_rig.faces = sidecar.faces.value_or(spec.faces);
   record.coupon_rig.area = area_of_pulled_fabric(a_case);
-  record.base = start_of(*a_case.friction, record.coupon_rig.area);
-  record.question.base = record.base;
-  record.question.baseline = baseline_of(record.base, spec, problems);
-  record.question.effects = library_of(spec, own_effects, problems);
+  record.question = question_of(a_case, record.coupon_rig, own_effects, problems);
+  record.base = record.question.base;
   friction::CouponData coupons;
   try {
     coupons = friction::read_coupons(
@@ -231,12 +274,10 @@ DiscoveryRecord discover_case_in(const Case& a_case, const fs::path& data,
     problems.insert(problems.end(), error.problems().begin(), error.problems().end());
   }
   if (!problems.empty()) throw InputError(std::move(problems));
-  record.question.rig = record.coupon_rig;
-  record.question.noise = spec.noise;
-  record.question.held_out = spec.held_out;
-  record.question.seed = static_cast<std::uint64_t>(spec.seed);
-  record.question.tow_pitch = spec.tow_pitch;
   record.findings = discover::discover_in_coupons(record.question, coupons);
+  record.proposal =
+      discover::propose(record.question, record.findings, discover::candidate_grid(record.findings.campaign),
+                        {.seed = record.question.seed});
   record.notes = record.findings.notes;
   record.notes.insert(record.notes.end(), a_case.notes.begin(), a_case.notes.end());
   return record;
@@ -270,6 +311,7 @@ Settings discovered_settings(const Case& a_case, const DiscoveryRecord& record) 
 }
 
 int discover_case(const DiscoverOptions& options) {
+  if (!options.design.empty()) return plan_coupons(options);
   Case a_case = read_friction_part(options.run);
   if (!a_case.discover) a_case.discover.emplace();
   if (options.seed) a_case.discover->seed = *options.seed;
@@ -283,6 +325,7 @@ int discover_case(const DiscoverOptions& options) {
   folder.write("discover/patched.yaml", resolved_yaml(discovered_settings(a_case, record)));
   folder.write("discover/gap.csv", gap_csv(record));
   folder.write("discover/shape.csv", shape_csv(record));
+  folder.write("discover/next_experiments.csv", next_experiments_csv(record));
   for (const std::string& reason : record.findings.decision.reasons) folder.log(reason);
   folder.close(a_case, {});
   if (options.run.print) print(record, folder.path());

@@ -7,6 +7,7 @@
 #include "pipeline/case.h"
 #include "pipeline/commands.h"
 #include "pipeline/discover/discovery.h"
+#include "pipeline/discover/propose.h"
 
 namespace heddle::pipeline {
 
@@ -20,6 +21,7 @@ struct DiscoveryRecord {
   discover::CouponRig coupon_rig;
   discover::CouponQuestion question;
   discover::CouponFindings findings;
+  discover::Proposal proposal;  ///< what to pull next
   std::vector<std::string> notes;
 };
 
@@ -29,6 +31,16 @@ struct DiscoveryRecord {
 DiscoveryRecord discover_case_in(const Case& a_case, const std::filesystem::path& data,
                                  const std::vector<std::filesystem::path>& own_effects = {});
 
+/// The case without its stamping.
+/// @throws InputError  if it has no friction
+Case read_friction_part(const RunOptions& options);
+
+/// What the case asks of coupons that this rig pulls.
+/// @param problems  numbers and effects that are not known are added
+discover::CouponQuestion question_of(const Case& a_case, const discover::CouponRig& rig,
+                                     const std::vector<std::filesystem::path>& own_effects,
+                                     Problems& problems);
+
 /// The settings with the baseline as it was fitted and, where one name was given, the effect it names.
 Settings discovered_settings(const Case& a_case, const DiscoveryRecord& record);
 
@@ -36,6 +48,8 @@ Settings discovered_settings(const Case& a_case, const DiscoveryRecord& record);
 std::string discovery_json(const DiscoveryRecord& record);
 /// One row a held-out condition: before, after, noise.
 std::string gap_csv(const DiscoveryRecord& record);
+/// The conditions to pull next, in the columns of a coupon table.
+std::string next_experiments_csv(const DiscoveryRecord& record);
 /// The best smooth gap that has no name, point by point.
 std::string shape_csv(const DiscoveryRecord& record);
 

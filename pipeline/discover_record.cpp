@@ -5,6 +5,7 @@
 
 #include "core/units.h"
 #include "pipeline/discover_command.h"
+#include "pipeline/discover_plan_record.h"
 #include "pipeline/json_text.h"
 
 namespace heddle::pipeline {
@@ -169,7 +170,10 @@ std::string discovery_json(const DiscoveryRecord& record) {
   root["noise"] = noise_json(found.noise);
   root["shape"] = {{"of_the_gap", shape_json(found.evidence.gap_shapes)},
                    {"left_over", shape_json(found.evidence.rest_shapes)}};
-  root["next_experiments"] = ordered_json::array();
+  root["isolability"] = isolability_json(found.forward, found.isolability);
+  root["detectable"] = detectable_json(found.forward, found.isolability);
+  root["next_experiments"] = next_experiments_json(record.proposal);
+  root["next"] = proposal_json(record.proposal);
   root["not_tried"] = ordered_json::array();
   for (const auto& [id, why] : found.refused) root["not_tried"].push_back({{"id", id}, {"why", why}});
   root["notes"] = record.notes;

@@ -96,6 +96,7 @@ std::optional<Scatter> scatter_of_samples(const CouponData& data, int faces, dou
 std::optional<Scatter> scatter_of_days(const CouponData& data, int faces, double sample_sd) {
   std::map<std::size_t, std::vector<Cell>> by_condition;
   for (const auto& [place, cell] : cells_of(data, faces)) by_condition[place.first].push_back(cell);
+  if (by_condition.empty()) return {};
   const auto anchor =
       std::max_element(by_condition.begin(), by_condition.end(),
                        [](const auto& a, const auto& b) { return a.second.size() < b.second.size(); });

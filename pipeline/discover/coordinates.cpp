@@ -44,7 +44,7 @@ double gaussian(double distance, double length) {
   return std::exp(-0.5 * x * x);
 }
 
-Eigen::MatrixXd likeness_of(const std::vector<CouponCell>& cells, double length) {
+Eigen::MatrixXd likeness_of(const std::vector<CouponCell>& cells, double length, Eigen::Index centred_over) {
   Eigen::Index size = 0;
   for (const CouponCell& cell : cells) size += std::ssize(cell.points);
   Eigen::MatrixXd likeness = Eigen::MatrixXd::Zero(size, size);
@@ -52,8 +52,9 @@ Eigen::MatrixXd likeness_of(const std::vector<CouponCell>& cells, double length)
     for (Eigen::Index j = 0; j < size; ++j)
       likeness.col(j).array() += ((c.at.array() - c.at[j]).square() * (-0.5 / (length * length))).exp();
   // What is the same everywhere is the amplitude's own.
-  likeness.rowwise() -= likeness.colwise().mean().eval();
-  likeness.colwise() -= likeness.rowwise().mean().eval();
+  const Eigen::Index over = centred_over > 0 ? centred_over : size;
+  likeness.rowwise() -= likeness.topRows(over).colwise().mean().eval();
+  likeness.colwise() -= likeness.leftCols(over).rowwise().mean().eval();
   return likeness;
 }
 

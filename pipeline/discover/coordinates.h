@@ -28,6 +28,8 @@ double gaussian(double distance, double length);
 /// Covariance of an error of form between two observations, with unit variance over each coordinate: a sum of
 /// smooth functions of one coordinate each (Gaussian kernels). A product of kernels would let the error
 /// wander from cell to cell, which no law's form does. Its mean over the observations is taken out.
-Eigen::MatrixXd likeness_of(const std::vector<CouponCell>& cells, double length);
+/// @param centred_over  the first so many observations, whose mean it is; 0: all
+Eigen::MatrixXd likeness_of(const std::vector<CouponCell>& cells, double length,
+                            Eigen::Index centred_over = 0);
 
 }  // namespace heddle::discover

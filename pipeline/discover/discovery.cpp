@@ -14,7 +14,7 @@ namespace heddle::discover {
 namespace {
 
 /// Different seeds for different draws, from the one of the case.
-enum class Draw : std::uint64_t { split = 1, noise, stability, bootstrap };
+enum class Draw : std::uint64_t { split = 1, noise, stability, bootstrap, isolability, outcomes };
 std::uint64_t seed_of(std::uint64_t seed, Draw draw) {
   return seed * 1000003u + static_cast<std::uint64_t>(draw);
 }
@@ -231,6 +231,10 @@ CouponFindings discover_in_coupons(const CouponQuestion& question, const frictio
                                       seed_of(question.seed, Draw::noise));
   findings.locations = locate(findings.contrasts, findings.result.gap, findings.largest);
   pass_gate(findings);
+
+  findings.isolability =
+      isolability_of(findings.forward, findings.result.baseline, observations,
+                     {.seed = seed_of(question.seed, Draw::isolability), .prior = question.search});
 
   const MapFit* best = best_with_effects(findings.result);
   findings.evidence.scatter_known = findings.noise.sample_source != friction::Scatter::Source::assumed;

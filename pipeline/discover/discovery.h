@@ -8,6 +8,7 @@
 
 #include "friction/calibration/model_numbers.h"
 #include "pipeline/discover/coupon_forward.h"
+#include "pipeline/discover/isolability.h"
 #include "pipeline/discover/locate.h"
 #include "pipeline/discover/noise.h"
 #include "pipeline/discover/search.h"
@@ -49,8 +50,8 @@ struct CouponFindings {
   Decision decision;
   std::optional<Gap> gap;  ///< absent where nothing could be held out
   std::vector<HeldOut> held_out;
-  bool saturated = false;          ///< as many numbers as conditions: a gap that shrinks says nothing
-  double detectable_factor = 3.0;  ///< standard deviations that count as detectable
+  bool saturated = false;   ///< as many numbers as conditions: a gap that shrinks says nothing
+  Isolability isolability;  ///< of the training cells, at the fitted baseline
   std::vector<std::pair<std::string, std::string>> refused;  ///< effects not tried, and why
   std::vector<std::string> notes;
 

@@ -163,6 +163,7 @@ const char* const of_fabric = "mesoscale/fabric_properties_test.cpp";
 const char* const of_json = "pipeline/outputs_test.cpp";
 const char* const of_coupons = "friction/coupon_data_test.cpp";
 const char* const of_fit = "friction/coupon_fit_test.cpp";
+const char* const of_design = "pipeline/discover/plan_test.cpp";
 const char* const of_outline = "macroscale/outline_test.cpp";
 
 const std::vector<Elsewhere> elsewhere{
@@ -312,6 +313,22 @@ const std::vector<Elsewhere> elsewhere{
     {"calibrate.friction", "pipeline/calibrate_test.cpp",
      "a calibration without friction, or of numbers that do not act, is refused",
      "of a command, not of a configuration"},
+    {"discover.design.column.unknown", of_design, "a design is refused with every problem and its line",
+     "of --design, not of a configuration"},
+    {"discover.design.column.missing", of_design, "a design is refused with every problem and its line",
+     "of --design, not of a configuration"},
+    {"discover.design.column.twice", of_design, "a design is refused with every problem and its line",
+     "of --design, not of a configuration"},
+    {"discover.design.number", of_design, "a design is refused with every problem and its line",
+     "of --design, not of a configuration"},
+    {"discover.design.range", of_design, "a design is refused with every problem and its line",
+     "of --design, not of a configuration"},
+    {"discover.design.replicates", of_design, "a design is refused with every problem and its line",
+     "of --design, not of a configuration"},
+    {"discover.design.empty", of_design, "a design is refused with every problem and its line",
+     "of --design, not of a configuration"},
+    {"discover.design.alike", of_design, "a design is refused with every problem and its line",
+     "of --design, not of a configuration"},
     {"environment.checkpoint_seconds", "pipeline/command_line_test.cpp",
      "a faulty interval in the environment is refused", "of a command, not of a configuration"},
 };
