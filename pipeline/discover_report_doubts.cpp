@@ -106,41 +106,63 @@ std::string look_alike_table(const DiscoveryPage& page) {
          table({"Look-alike", "ln Bayes factor against it", "Probability", "Here"}, rows);
 }
 
-constexpr double detectable_factor = 3.0;  // standard deviations
-
-/// The amplitude that stands out by the wanted number of standard deviations, from the strongest signature.
+/// The amplitude that stands out by three standard deviations, and how often the usual one would get its own
+/// name.
 std::string detectable_table(const DiscoveryPage& page) {
   std::vector<std::vector<std::string>> rows;
-  const double wanted = detectable_factor;
-  for (const discover::Signature& signature : page.found.result.signatures) {
-    const discover::Candidate& candidate = page.found.forward.candidates[signature.effect];
-    const double length = signature.direction.norm();
-    const double z = length > 0.0 ? wanted / length : INFINITY;
-    const auto& amplitude = candidate.numbers.front();
-    const double high = amplitude.prior.bounds()[1];
-    const bool within = z < std::min(high, 4.0);
-    const double change = z * (signature.change.maxCoeff() - signature.change.minCoeff());
-    const bool is_linear = amplitude.prior.kind != discover::Prior::Kind::log_normal;
+  for (const discover::EffectSight& sight : page.found.isolability.effects) {
+    const discover::Candidate& candidate = page.found.forward.candidates[sight.effect];
     rows.push_back(
         {spaced(candidate.id),
-         within ? quantity_text(amplitude.prior.value_at(z), amplitude.unit, 2) : "none",
-         within ? percent(change) : "–",
-         within ? (is_linear ? fmt::format("{:.2f}", z) : fmt::format("{:.2f} (of ln)", z)) : "> 4",
-         z <= 1.0 ? "well"
-         : within ? "only if large"
-                  : "not"});
+         sight.detectable ? quantity_text(*sight.detectable, candidate.numbers.front().unit, 2) : "none",
+         fmt::format("{:.1f}", sight.length), sight.seen ? "yes" : "no",
+         fmt::format("{:.0f} %", 100.0 * sight.right)});
   }
   if (rows.empty()) return "";
-  return fmt::format(
-             "<h3>What this campaign can see</h3>\n<p>The smallest amplitude of each effect that would stand "
-             "out by "
-             "{:g} standard deviations if it alone were missing, beside what the baseline's numbers take up. "
-             "Smaller "
-             "ones stay unseen, and “nothing missing” says nothing of them.</p>\n",
-             wanted) +
-         table({"Effect", "Smallest amplitude seen", "Its range in force", "In prior standard deviations",
-                "Seen"},
-               rows);
+  return "<h3>What this campaign can see</h3>\n<p>The smallest amplitude of each effect that would stand out "
+         "by 3 standard "
+         "deviations if it alone were missing, beside what the baseline's numbers take up; by how many its "
+         "usual amplitude (one "
+         "standard deviation of its prior) would stand out; and how often that would get its right name. "
+         "Smaller ones stay "
+         "unseen, and “nothing missing” says nothing of them.</p>\n" +
+         table({"Effect", "Smallest amplitude seen", "Usual one stands out by", "Seen", "Named right"}, rows);
+}
+
+/// Effects that this campaign sees and cannot tell apart, and how near they are.
+std::string isolability_part(const DiscoveryPage& page) {
+  const discover::Isolability& sights = page.found.isolability;
+  if (sights.effects.empty()) return "";
+  const auto name = [&](std::size_t k) {
+    return spaced(page.found.forward.candidates[sights.effects[k].effect].id);
+  };
+  std::string out = "<h3>What this campaign can tell apart</h3>\n";
+  if (sights.groups.empty())
+    return out + "<p>Every effect that it sees lies 3 standard deviations or more from each other one.</p>\n";
+  out +=
+      "<p>Each row is the truth, each column what it may be taken for: the squared distance in standard "
+      "deviations at the usual "
+      "amplitude, and about how often the two would be swapped if only they were asked. Below 9 they are not "
+      "apart.</p>\n";
+  for (const std::vector<std::size_t>& group : sights.groups) {
+    // Groups hold positions of `effects`, as rows of lambda do.
+    std::vector<std::string> head{"Truth"};
+    for (const std::size_t k : group) head.push_back(name(k));
+    std::vector<std::vector<std::string>> rows;
+    for (const std::size_t truth : group) {
+      std::vector<std::string> row{name(truth)};
+      for (const std::size_t rival : group) {
+        const double lambda =
+            sights.lambda(static_cast<Eigen::Index>(truth), static_cast<Eigen::Index>(rival));
+        row.push_back(truth == rival
+                          ? "–"
+                          : fmt::format("{:.1f}, {:.0f} %", lambda, 100.0 * discover::swap_rate(lambda)));
+      }
+      rows.push_back(std::move(row));
+    }
+    out += table(head, rows);
+  }
+  return out;
 }
 
 std::string blind_spots(const DiscoveryPage& page) {
@@ -186,9 +208,9 @@ std::string notes(const DiscoveryPage& page) {
 
 std::string doubts_section(const DiscoveryPage& page) {
   return section("Doubts", verdict_list(caution_verdicts(page)) + look_alike_table(page) +
-                               detectable_table(page) + "<div class=\"columns\"><div>\n" + blind_spots(page) +
-                               not_tried_table(page) + "</div><div>\n" + tolerances(page) + notes(page) +
-                               "</div></div>\n");
+                               isolability_part(page) + detectable_table(page) +
+                               "<div class=\"columns\"><div>\n" + blind_spots(page) + not_tried_table(page) +
+                               "</div><div>\n" + tolerances(page) + notes(page) + "</div></div>\n");
 }
 
 }  // namespace heddle::pipeline
