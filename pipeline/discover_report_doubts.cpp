@@ -6,6 +6,7 @@
 
 #include "pipeline/calibration_record.h"
 #include "pipeline/discover_report_parts.h"
+#include "pipeline/isolability_picture.h"
 #include "pipeline/page.h"
 
 namespace heddle::pipeline {
@@ -129,40 +130,26 @@ std::string detectable_table(const DiscoveryPage& page) {
          table({"Effect", "Smallest amplitude seen", "Usual one stands out by", "Seen", "Named right"}, rows);
 }
 
-/// Effects that this campaign sees and cannot tell apart, and how near they are.
+/// Who is taken for whom, and the groups that this campaign sees and cannot tell apart.
 std::string isolability_part(const DiscoveryPage& page) {
   const discover::Isolability& sights = page.found.isolability;
   if (sights.effects.empty()) return "";
-  const auto name = [&](std::size_t k) {
-    return spaced(page.found.forward.candidates[sights.effects[k].effect].id);
-  };
-  std::string out = "<h3>What this campaign can tell apart</h3>\n";
-  if (sights.groups.empty())
-    return out + "<p>Every effect that it sees lies 3 standard deviations or more from each other one.</p>\n";
-  out +=
-      "<p>Each row is the truth, each column what it may be taken for: the squared distance in standard "
-      "deviations at the usual "
-      "amplitude, and about how often the two would be swapped if only they were asked. Below 9 they are not "
-      "apart.</p>\n";
+  std::vector<std::string> groups;
   for (const std::vector<std::size_t>& group : sights.groups) {
-    // Groups hold positions of `effects`, as rows of lambda do.
-    std::vector<std::string> head{"Truth"};
-    for (const std::size_t k : group) head.push_back(name(k));
-    std::vector<std::vector<std::string>> rows;
-    for (const std::size_t truth : group) {
-      std::vector<std::string> row{name(truth)};
-      for (const std::size_t rival : group) {
-        const double lambda =
-            sights.lambda(static_cast<Eigen::Index>(truth), static_cast<Eigen::Index>(rival));
-        row.push_back(truth == rival
-                          ? "–"
-                          : fmt::format("{:.1f}, {:.0f} %", lambda, 100.0 * discover::swap_rate(lambda)));
-      }
-      rows.push_back(std::move(row));
-    }
-    out += table(head, rows);
+    std::string text = "Not told apart:";
+    for (const std::size_t k : group)  // positions in `effects`
+      text += fmt::format("{} {}", k == group.front() ? "" : ",",
+                          spaced(page.found.forward.candidates[sights.effects[k].effect].id));
+    groups.push_back(std::move(text));
   }
-  return out;
+  return "<h3>What this campaign can tell apart</h3>\n" +
+         figure(draw(page.found.forward, sights),
+                "Each row is the truth at its usual amplitude, each column what it may be taken for; figures "
+                "are how often, in per "
+                "cent, if only the two were asked.") +
+         (groups.empty()
+              ? "<p>Every effect that it sees lies 3 standard deviations or more from each other one.</p>\n"
+              : list(groups));
 }
 
 std::string blind_spots(const DiscoveryPage& page) {

@@ -12,6 +12,34 @@ namespace {
 
 using discover::Answer;
 
+std::string pair_words(const discover::Proposal& proposal, const discover::RivalPair& pair) {
+  return fmt::format("{} from {}", spaced(proposal.rivals[pair.first].name),
+                     spaced(proposal.rivals[pair.second].name));
+}
+
+/// The conditions to pull next, with what they are expected to bring.
+std::string proposed_table(const DiscoveryPage& page) {
+  const discover::Proposal& proposal = page.record.proposal;
+  if (proposal.pulls.empty()) return "";
+  std::vector<std::vector<std::string>> rows;
+  for (const discover::ProposedPull& pull : proposal.pulls) {
+    std::string separates;
+    for (const discover::RivalPair& pair : pull.separates)
+      separates += fmt::format("{}{}", separates.empty() ? "" : "; ", pair_words(proposal, pair));
+    rows.push_back({condition_words(page, pull.cell), fmt::format("{:.2f}", pull.right), separates});
+  }
+  std::string out = fmt::format(
+      "<h3>Pull these next</h3>\n<p>Expected probability of the right answer: {:.2f} now, {:.2f} after all "
+      "of them, from simulated "
+      "outcomes.</p>\n",
+      proposal.right_before, proposal.right_after);
+  out += table({"Condition", "Right answer after it", "Tells apart"}, rows);
+  for (const discover::RivalPair& pair : proposal.inseparable)
+    out += fmt::format("<p>No such conditions within the campaign's levels tell {}.</p>\n",
+                       escape(pair_words(proposal, pair)));
+  return out;
+}
+
 /// Among the conditions already pulled, those at which more pulls tell the two best explanations apart.
 std::string repeats_table(const DiscoveryPage& page) {
   if (page.rivals.size() < 2 || page.found.decision.answer == Answer::no_gap) return "";
@@ -98,7 +126,7 @@ std::string patched(const DiscoveryPage& page) {
 }  // namespace
 
 std::string next_section(const DiscoveryPage& page) {
-  return section("Next", list(advice(page)) + repeats_table(page) + patched(page));
+  return section("Next", list(advice(page)) + proposed_table(page) + repeats_table(page) + patched(page));
 }
 
 }  // namespace heddle::pipeline
