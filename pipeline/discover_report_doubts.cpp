@@ -104,7 +104,7 @@ std::string look_alike_table(const DiscoveryPage& page) {
   }
   if (rows.empty()) return "";
   return fmt::format("<h3>What {} could be taken for</h3>\n", escape(page.name_of(*best))) +
-         table({"Look-alike", "ln Bayes factor against it", "Probability", "Here"}, rows);
+         table({"Look-alike", "Alone, ln Bayes factor against it", "Probability", "Here"}, rows);
 }
 
 /// The amplitude that stands out by three standard deviations, and how often the usual one would get its own
