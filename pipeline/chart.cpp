@@ -164,9 +164,19 @@ Canvas draw(const LineChart& chart) {
     x_columns.push_back(&series.x);
     y_columns.push_back(&series.y);
   }
+  for (const Ribbon& ribbon : chart.ribbons) {
+    x_columns.push_back(&ribbon.x);
+    y_columns.insert(y_columns.end(), {&ribbon.low, &ribbon.high});
+  }
   const Ruler x = ruler(chart.x, x_columns, {frame.left, frame.right}, 7, Ends::data);
   const int rows = std::max(2, static_cast<int>((frame.bottom - frame.top) / 52.0));
   const Ruler y = ruler(chart.y, y_columns, {frame.bottom, frame.top}, rows, Ends::rounded);
+  for (const Ribbon& ribbon : chart.ribbons) {
+    std::vector<Point> outline = pixels_of({"", ribbon.x, ribbon.high}, x, y);
+    const std::vector<Point> low = pixels_of({"", ribbon.x, ribbon.low}, x, y);
+    outline.insert(outline.end(), low.rbegin(), low.rend());
+    canvas.polygon(outline, "ribbon");
+  }
   draw_axes(canvas, frame, x, y, chart.x, chart.y);
 
   std::vector<std::vector<Point>> lines;

@@ -25,11 +25,17 @@ struct Series {
   bool dots = false;  ///< single points instead of a line
 };
 
+/// A soft band behind the lines, from low to high: what noise alone would do, or how far a curve is known.
+struct Ribbon {
+  std::vector<double> x, low, high;  ///< same size
+};
+
 /// Lines over a common abscissa, each named at its right end in its own colour and dash.
 struct LineChart {
   std::string label;  ///< what the chart shows, for readers who cannot see it
   Axis x, y;
   std::vector<Series> series;
+  std::vector<Ribbon> ribbons = {};
   double width = 720.0, height = 360.0;  ///< [px]
   double label_room = 130.0;             ///< right of the plot, for the names [px]
 };

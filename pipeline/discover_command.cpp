@@ -12,6 +12,7 @@
 #include "friction/calibration/model_numbers.h"
 #include "friction/parameters.h"
 #include "pipeline/config_tree.h"
+#include "pipeline/discover_report.h"
 #include "pipeline/run_folder.h"
 #include "pipeline/stages.h"
 
@@ -291,9 +292,17 @@ Settings discovered_settings(const Case& a_case, const DiscoveryRecord& record) 
   const discover::Scored* scored = named ? found.result.find(found.decision.named) : nullptr;
   const discover::MapFit& fit = scored != nullptr ? scored->exact : found.result.baseline;
   const friction::Model patched = discover::patched_model(record.base, found.forward, fit.trial);
+  // An effect of the user's own may move a number that every model has.
+  const auto of_named = [&](const std::string& key) {
+    return std::ranges::any_of(fit.hypothesis, [&](std::size_t effect) {
+      return std::ranges::count(found.forward.candidates[effect].numbers, key, &discover::Unknown::key) > 0;
+    });
+  };
   for (const friction::ModelNumber& number : friction::numbers_of(patched)) {
     const bool of_law = number.key.starts_with("friction.");
-    const bool moved = std::ranges::count(record.question.baseline, number.key, &discover::Unknown::key) > 0;
+    const bool moved =
+        std::ranges::count(record.question.baseline, number.key, &discover::Unknown::key) > 0 ||
+        of_named(number.key);
     const bool of_effect = number.key.starts_with("effects.");
     if (of_law || moved || of_effect) set_number(settings, number.key, number.value);
     if (of_effect) settings.blocks.insert(number.key.substr(0, number.key.rfind('.')));
@@ -312,6 +321,7 @@ int discover_case(const DiscoverOptions& options) {
                    options.run.force);
   folder.write("inputs/coupons.csv", read_text_file(options.data));
   folder.write("discover/report.json", discovery_json(record));
+  folder.write("discover/report.html", discover_html(record));
   folder.write("discover/patched.yaml", resolved_yaml(discovered_settings(a_case, record)));
   folder.write("discover/gap.csv", gap_csv(record));
   folder.write("discover/shape.csv", shape_csv(record));

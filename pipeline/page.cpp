@@ -40,6 +40,15 @@ std::string page_foot(std::string_view words) {
   return fmt::format("<footer>{}</footer>\n</main>\n</body>\n</html>\n", escape(words));
 }
 
+std::string result(std::string_view name, const std::string& value, std::string_view unit) {
+  return fmt::format("<div><dt>{}</dt><dd>{}<small>{}{}</small></dd></div>\n", escape(name), escape(value),
+                     unit == "°" ? "" : "\u2009", escape(unit));
+}
+
+std::string results(const std::string& tiles) {
+  return tiles.empty() ? "" : "<dl class=\"results\">\n" + tiles + "</dl>\n";
+}
+
 std::string section(std::string_view title, const std::string& body) {
   return body.empty() ? "" : fmt::format("<section>\n<h2>{}</h2>\n{}</section>\n", escape(title), body);
 }

@@ -14,6 +14,9 @@ namespace heddle::pipeline {
 std::string page_head(std::string_view title);
 std::string page_foot(std::string_view words);
 
+/// One large number at the top of a page; `results` holds several. Empty where the tiles are.
+std::string result(std::string_view name, const std::string& value, std::string_view unit);
+std::string results(const std::string& tiles);
 /// Empty where the body is.
 std::string section(std::string_view title, const std::string& body);
 /// @param caption  says what to see in the picture

@@ -86,6 +86,8 @@ class Canvas {
 /// Number of distinct series styles "s0", "s1", ... (lines) and "b0", "b1", ... (bands).
 inline constexpr int series_styles = 8;
 inline constexpr int band_styles = 12;
+/// And of fills for signed values, "d0" (far below zero) over "d4" (about zero) to "d8".
+inline constexpr int signed_styles = 9;
 
 /// CSS of every class the painter uses, for light pages, dark pages and print. Series colours after Okabe &
 /// Ito (2008), lightened for dark pages; dashes tell them apart without colour.

@@ -12,6 +12,8 @@ struct Scheme {
   std::array<std::string_view, series_styles> series;
   std::array<std::string_view, band_styles> bands;
   std::string_view warp, weft, edge;
+  std::string_view ribbon, bar;
+  std::array<std::string_view, signed_styles> signs;  ///< from far below zero to far above; text reads on all
 };
 
 /// Bands come in three families: stored energies blue, friction orange, the rest green and grey.
@@ -26,7 +28,10 @@ constexpr Scheme light{
      "#0f7f5f", "#6dbb9c", "#8d949c"},
     "#c98a4b",
     "#5b86a8",
-    "#ffffff"};
+    "#ffffff",
+    "#eceef0",
+    "#9db8cc",
+    {"#5aa5d6", "#86bde1", "#b3d5ec", "#dcebf5", "#f4f5f6", "#fbe8d6", "#f7cfa8", "#f1b177", "#e8914a"}};
 
 constexpr Scheme dark{
     "#15181c",
@@ -39,7 +44,10 @@ constexpr Scheme dark{
      "#1b9a75", "#78c8a8", "#8d949c"},
     "#d59a5c",
     "#6d9bc0",
-    "#15181c"};
+    "#15181c",
+    "#262b31",
+    "#3f566a",
+    {"#1d679c", "#1b5580", "#1b4462", "#1b3346", "#20252b", "#3d2c1d", "#5c3b1c", "#7d4a1a", "#9c5714"}};
 
 std::string rules(const Scheme& scheme) {
   std::string out = fmt::format(
@@ -48,6 +56,10 @@ std::string rules(const Scheme& scheme) {
       ".scale,.line.total{{stroke:{}}}",
       scheme.sheet, scheme.ink, scheme.faint, scheme.grid, scheme.axis, scheme.faint, scheme.warp,
       scheme.weft, scheme.edge, scheme.ink);
+  out += fmt::format(".ribbon{{fill:{}}}.bar{{fill:{}}}.hollow{{fill:{};stroke:{}}}", scheme.ribbon,
+                     scheme.bar, scheme.sheet, scheme.faint);
+  for (std::size_t i = 0; i < scheme.signs.size(); ++i)
+    out += fmt::format(".d{}{{fill:{}}}", i, scheme.signs[i]);
   for (int i = 0; i < series_styles; ++i) {
     const std::string_view colour = scheme.series[static_cast<std::size_t>(i)];
     out +=

@@ -20,12 +20,7 @@ constexpr double degrees = 180.0 / std::numbers::pi;
 // ---- the top of the page
 // -----------------------------------------------------------------------------------------
 
-std::string result(std::string_view name, const std::string& value, std::string_view unit) {
-  return fmt::format("<div><dt>{}</dt><dd>{}<small>{}{}</small></dd></div>\n", escape(name), escape(value),
-                     unit == "°" ? "" : "\u2009", escape(unit));
-}
-
-std::string results(const ReportInput& input) {
+std::string main_results(const ReportInput& input) {
   std::string out;
   if (input.stamping) {
     const auto& summary = *input.stamping;
@@ -43,7 +38,7 @@ std::string results(const ReportInput& input) {
     out += result("Gap closure", fmt::format("{:.2f}", degrees * cell.gap_closure_angle), "°");
     out += result("Contact fraction", significant(100.0 * cell.contact_area_fraction, 3), "%");
   }
-  return out.empty() ? "" : "<dl class=\"results\">\n" + out + "</dl>\n";
+  return results(out);
 }
 
 std::string header(const ReportInput& input) {
@@ -270,7 +265,7 @@ std::string grounds(const ReportInput& input) {
 
 std::string report_html(const ReportInput& input) {
   std::string out = page_head(input.name);
-  out += header(input) + results(input) + verdict_list(verdicts(input));
+  out += header(input) + main_results(input) + verdict_list(verdicts(input));
   out += section("The formed part", formed_part(input));
   out += section("Forces and motion", forces(input));
   out += section("Is the answer sound?", soundness(input));
