@@ -10,6 +10,7 @@
 #include "friction/calibration/model_numbers.h"
 #include "friction/parameters.h"
 #include "pipeline/config_tree.h"
+#include "pipeline/discover_stamping.h"
 #include "pipeline/run_folder.h"
 #include "pipeline/stages.h"
 
@@ -65,6 +66,8 @@ std::vector<discover::Unknown> baseline_of(const friction::Model& model, const D
   return baseline;
 }
 
+}  // namespace
+
 std::vector<discover::EffectFile> library_of(const DiscoverSpec& spec,
                                              const std::vector<fs::path>& own_effects, Problems& problems) {
   std::vector<discover::EffectFile> all = discover::built_in_effects();
@@ -93,12 +96,7 @@ std::vector<discover::EffectFile> library_of(const DiscoverSpec& spec,
   return chosen;
 }
 
-/// FILE.yaml beside FILE.csv: what the table itself cannot say.
-struct Sidecar {
-  std::optional<double> plate_area;
-  std::optional<int> faces;
-  std::string rig, provenance;
-};
+namespace {
 
 std::string in_one_line(const ConfigNode& node) {
   if (node.kind == ConfigNode::Kind::scalar) return node.text;
@@ -108,6 +106,8 @@ std::string in_one_line(const ConfigNode& node) {
     parts.push_back(fmt::format("{} {}", entry.key, in_one_line(entry.value)));
   return fmt::format("{}", fmt::join(parts, ", "));
 }
+
+}  // namespace
 
 Sidecar read_sidecar(const fs::path& data, Problems& problems) {
   Sidecar sidecar;
@@ -145,6 +145,8 @@ Sidecar read_sidecar(const fs::path& data, Problems& problems) {
   return sidecar;
 }
 
+namespace {
+
 void demand_variety(const friction::CouponData& data, Problems& problems) {
   if (data.conditions >= 2) return;
   problems.push_back({"discover.data.alike"_rule, "data", "",
@@ -174,7 +176,9 @@ void set_number(Settings& settings, const std::string& path, double value) {
   settings.add(std::move(setting));
 }
 
-void print(const DiscoveryRecord& record, const fs::path& folder) {
+}  // namespace
+
+void print_discovery(const DiscoveryRecord& record, const fs::path& folder) {
   const discover::CouponFindings& f = record.findings;
   fmt::print("{}", in_words(f.decision.answer));
   if (f.decision.answer == discover::Answer::named ||
@@ -198,8 +202,6 @@ void print(const DiscoveryRecord& record, const fs::path& folder) {
   for (const std::string& note : record.notes) fmt::print("{}\n", note);
   fmt::print("results {}\n", folder.string());
 }
-
-}  // namespace
 
 DiscoveryRecord discover_case_in(const Case& a_case, const fs::path& data,
                                  const std::vector<fs::path>& own_effects) {
@@ -261,6 +263,7 @@ Settings discovered_settings(const Case& a_case, const DiscoveryRecord& record) 
 }
 
 int discover_case(const DiscoverOptions& options) {
+  if (discover::is_stamping_table(read_text_file(options.data))) return discover_stamping(options);
   Case a_case = read_friction_part(options.run);
   if (!a_case.discover) a_case.discover.emplace();
   if (options.seed) a_case.discover->seed = *options.seed;
@@ -275,7 +278,7 @@ int discover_case(const DiscoverOptions& options) {
   folder.write("discover/shape.csv", shape_csv(record));
   for (const std::string& reason : record.findings.decision.reasons) folder.log(reason);
   folder.close(a_case, {});
-  if (options.run.print) print(record, folder.path());
+  if (options.run.print) print_discovery(record, folder.path());
   return exit_done;
 }
 
