@@ -3,7 +3,9 @@
 #include <fmt/format.h>
 #include <tbb/global_control.h>
 
+#include <Eigen/Cholesky>
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <iostream>
 #include <memory>
@@ -33,21 +35,26 @@ using discover::Trial;
 constexpr double true_enough = 0.2;
 constexpr int rounds_max = 2;
 
-/// What one finer grid leaves unsaid of the grid's error: this share of the change that it made, over this
-/// share of the stroke alike; priors. A grid knows nothing of speeds, so it is the same at all conditions.
-constexpr double grid_share = 0.5, grid_length = 0.3;
+/// Error of the grid that is left beside the numbers and the share of one finer grid: as large as the change
+/// that grid made, once over a third of the stroke alike and once over little more than a bin, since the
+/// punch takes up node after node; priors. A grid knows nothing of speeds, so the error is the same at all
+/// conditions.
+constexpr std::array grid_lengths{0.3, 0.06};
 
-Eigen::MatrixXd grid_covariance(const Eigen::VectorXd& change, const std::vector<CouponCell>& cells,
-                                const std::vector<double>& edges) {
-  const Eigen::VectorXd stroke =
-      discover::of_points(cells, [](const CouponCell&, const discover::CouponPoint& p) { return p.slip; });
-  const double length = grid_length * edges.back();
-  Eigen::MatrixXd covariance(change.size(), change.size());
-  for (Eigen::Index i = 0; i < change.size(); ++i)
-    for (Eigen::Index j = 0; j < change.size(); ++j)
-      covariance(i, j) =
-          grid_share * grid_share * change[i] * change[j] * discover::gaussian(stroke[i] - stroke[j], length);
+/// @param change  rms of ln F
+/// @param a, b    stroke of observations [m]
+Eigen::MatrixXd grid_covariance(double change, const Eigen::VectorXd& a, const Eigen::VectorXd& b,
+                                double stroke) {
+  Eigen::MatrixXd covariance = Eigen::MatrixXd::Zero(a.size(), b.size());
+  for (const double length : grid_lengths)
+    for (Eigen::Index i = 0; i < a.size(); ++i)
+      for (Eigen::Index j = 0; j < b.size(); ++j)
+        covariance(i, j) += change * change * discover::gaussian(a[i] - b[j], length * stroke);
   return covariance;
+}
+
+Eigen::VectorXd strokes_of(const std::vector<CouponCell>& cells) {
+  return discover::of_points(cells, [](const CouponCell&, const discover::CouponPoint& p) { return p.slip; });
 }
 
 std::vector<StampingCondition> conditions_of(const StampingData& data, const std::vector<CouponCell>& cells) {
@@ -83,6 +90,15 @@ MapFit settled(const ForwardModel& dear, const Surrogate& surrogate, MapFit fit,
     model = relinearised(dear, surrogate, fit.trial, run);
     fit = map_fit(model, fit.data, fit.hypothesis, fit.z);
   }
+}
+
+/// What the training says of the grid's error on other conditions, given what a fit left over there.
+Eigen::VectorXd grid_error_elsewhere(const StampingDiscovery& discovery, const std::vector<CouponCell>& cells,
+                                     double stroke, const MapFit& fit) {
+  const Eigen::MatrixXd shared = grid_covariance(discovery.grid_error, strokes_of(cells),
+                                                 strokes_of(discovery.record.findings.training), stroke);
+  const Eigen::MatrixXd covariance = fit.data->covariance();
+  return -shared * covariance.ldlt().solve(fit.data->unwhitened(fit.residual)).eval();
 }
 
 /// Root mean squares of true model less measured, on conditions that no fit saw.
@@ -157,7 +173,11 @@ void add_and_validate(StampingDiscovery& discovery, StampingRuns& runs, const St
         "A held-out condition has no stamping that comes to its end: no gap is given.");
     return;
   }
-  found.held_out = held_out_of(found, without, with);
+  // Both carry the error of the grid as the training saw it beside each: it is no effect of speed.
+  const std::vector<CouponCell> cells = pick(found.campaign.cells, found.split.held_out);
+  const double stroke = data.edges.back();
+  found.held_out = held_out_of(found, without + grid_error_elsewhere(discovery, cells, stroke, baseline),
+                               with + grid_error_elsewhere(discovery, cells, stroke, after));
   found.gap = discover::gap_of(found.held_out, static_cast<std::uint64_t>(discovery.record.seed));
   if (found.gap->conditions < 4)
     discovery.record.notes.push_back(
@@ -238,10 +258,11 @@ StampingDiscovery discover_stamping_in(const Case& a_case, StampingRuns& runs, c
     throw NumericalError("discover: the stamping on the finer grid does not come to its end");
   discovery.grid_error = change.norm() / std::sqrt(change.size());
 
+  const Eigen::VectorXd strokes = strokes_of(found.training);
   discover::Observations observations;
   observations.value = log_forces_of(found.training);
-  observations.covariance =
-      covariance_of(found.noise, found.training, {}) + grid_covariance(change, found.training, data.edges);
+  observations.covariance = covariance_of(found.noise, found.training, {}) +
+                            grid_covariance(discovery.grid_error, strokes, strokes, data.edges.back());
   observations.form = spec.noise.effect_form;
   observations.likeness = discover::likeness_of(found.training, spec.noise.effect_form_length);
   judge(found, observations, record.question);

@@ -62,14 +62,14 @@ std::vector<Unknown> baseline_of(const Case& a_case, const DiscoverSpec& spec, P
   }
   // A prior of the mesoscale (docs/theory/mesoscale.md), so a factor of 1.5 is one standard deviation.
   const double tow_friction = a_case.settings.number("forming.tow_friction");
-  if (tow_friction > 0.0)
+  if (tow_friction > 0.0 && tow_friction < 1.0)  // far enough from the ends of its range to be moved
     baseline.push_back({.key = "forming.tow_friction",
                         .unit = "",
                         .prior = {.kind = Prior::Kind::log_normal,
                                   .centre = tow_friction,
                                   .scale = 1.5,
                                   .low = 0.0,
-                                  .high = 2.0}});
+                                  .high = 1.5}});
   return baseline;
 }
 

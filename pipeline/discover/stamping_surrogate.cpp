@@ -63,7 +63,7 @@ Eigen::VectorXd slope_of_number(const ForwardModel& dear, const Trial& centre, c
   return slopes.slope;
 }
 
-/// Switches one effect on, further and further until it is clear, then half as far.
+/// Switches one effect on, further and further until it is clear and half as far says the same slope.
 Eigen::VectorXd slope_of_effect(const ForwardModel& dear, const Trial& centre, const Eigen::VectorXd& here,
                                 std::size_t effect, const SurrogateOptions& options, SlopeCheck& check) {
   const Candidate& candidate = dear.candidates[effect];
@@ -79,35 +79,35 @@ Eigen::VectorXd slope_of_effect(const ForwardModel& dear, const Trial& centre, c
     trial.effects.emplace_back(effect, std::move(values));
     return dear.predict(trial);
   };
-  Eigen::VectorXd full;
   for (double z = 1.0; z <= options.farthest; z += 1.0) {
     check.step = amplitude.prior.value_at(z) - off;
-    full = predict(off + check.step);
+    const Eigen::VectorXd full = predict(off + check.step);
     if (!full.allFinite()) {
       check.refused = fmt::format("there is no prediction at {} = {:g}", amplitude.key, off + check.step);
       return {};
     }
     check.change = (full - here).cwiseAbs().maxCoeff();
-    if (check.change >= options.clear_change) break;
+    const bool last = z + 1.0 > options.farthest;
+    if (check.change < options.smallest_change || (check.change < options.clear_change && !last)) continue;
+    const Eigen::VectorXd half = predict(off + 0.5 * check.step);
+    if (!half.allFinite()) {
+      check.refused =
+          fmt::format("there is no prediction at {} = {:g}", amplitude.key, off + 0.5 * check.step);
+      return {};
+    }
+    const TwoSlopes slopes = two_slopes(here, full, half, check.step);
+    check.disagreement = slopes.disagreement;
+    if (check.disagreement <= options.disagreement) return slopes.slope;
   }
-  if (check.change < options.smallest_change) {
-    check.refused =
-        fmt::format("changes the force by {:.2g} % at most, even at {} = {:g}: not to be seen here",
-                    100.0 * check.change, amplitude.key, off + check.step);
-    return {};
-  }
-  const Eigen::VectorXd half = predict(off + 0.5 * check.step);
-  if (!half.allFinite()) {
-    check.refused = fmt::format("there is no prediction at {} = {:g}", amplitude.key, off + 0.5 * check.step);
-    return {};
-  }
-  const TwoSlopes slopes = two_slopes(here, full, half, check.step);
-  check.disagreement = slopes.disagreement;
-  if (check.disagreement > options.disagreement)
-    check.refused = fmt::format(
-        "its slopes at two step sizes of {} ({:g} and half of it) differ by {:.0f} %, more than {:.0f} %",
-        amplitude.key, check.step, 100.0 * check.disagreement, 100.0 * options.disagreement);
-  return slopes.slope;
+  check.refused =
+      check.change < options.smallest_change
+          ? fmt::format("changes the force by {:.2g} % at most, even at {} = {:g}: not to be seen here",
+                        100.0 * check.change, amplitude.key, off + check.step)
+          : fmt::format(
+                "its slopes at two step sizes of {} ({:g} and half of it) differ by {:.0f} %, more than "
+                "{:.0f} %",
+                amplitude.key, check.step, 100.0 * check.disagreement, 100.0 * options.disagreement);
+  return {};
 }
 
 double rms(const Eigen::VectorXd& values) {

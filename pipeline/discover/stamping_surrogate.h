@@ -23,7 +23,7 @@ struct SlopeCheck {
 
 struct SurrogateOptions {
   double disagreement = 0.1;       ///< beyond which an effect's slope is refused
-  double clear_change = 0.01;      ///< of ln F somewhere: the step grows until it makes as much ...
+  double clear_change = 0.01;      ///< of ln F somewhere: the step grows until it makes as much and agrees ...
   double farthest = 3.0;           ///< ... or reaches this coordinate of the prior
   double smallest_change = 0.001;  ///< of ln F; an effect that makes less at the farthest step is not seen
 };

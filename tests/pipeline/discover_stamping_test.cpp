@@ -287,6 +287,21 @@ TEST_CASE("a slope that two step sizes do not agree on within a tenth is refused
   }
 }
 
+TEST_CASE("a step grows past a jump near the off value until half of it says the same slope",
+          "[pipeline][discover]") {
+  ForwardModel dear = stand_in();
+  dear.predict = [](const Trial& trial) {
+    Eigen::VectorXd values = StandIn{}(trial);
+    for (const auto& [effect, amplitude] : trial.effects)
+      if (effect == 1 && amplitude[0] > 1.0 && amplitude[0] < 20.0) values.array() += 0.05;
+    return values;
+  };
+  const Surrogate surrogate = affine_surrogate(dear);
+  CHECK(surrogate.checks[3].refused.empty());
+  CHECK(surrogate.checks[3].step == Approx(99.0));
+  CHECK(surrogate.checks[3].disagreement < 1e-9);
+}
+
 TEST_CASE("an effect that moves nothing, or has no prediction, is not searched for", "[pipeline][discover]") {
   ForwardModel dear = stand_in();
   dear.predict = [](const Trial& trial) {
