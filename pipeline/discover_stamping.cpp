@@ -136,10 +136,14 @@ void note_slopes(StampingDiscovery& discovery) {
       discovery.record.notes.push_back(fmt::format(
           "The slope of {} differs by {:.0f} % between two step sizes: the affine model is rough in it.",
           check.key, 100.0 * check.disagreement));
-    if (!check.refused.empty())
-      discovery.record.findings.refused.emplace_back(
-          check.id,
-          check.detail.empty() ? check.refused : fmt::format("{}: {}", check.detail, check.refused));
+    if (check.refused.empty()) continue;
+    std::string why =
+        check.detail.empty() ? check.refused : fmt::format("{}: {}", check.detail, check.refused);
+    if (check.values > 0)
+      discovery.record.notes.push_back(fmt::format(
+          "{} is tried at the {} values alone that were stamped: {}.", check.id, check.values, why));
+    else
+      discovery.record.findings.refused.emplace_back(check.id, std::move(why));
   }
 }
 

@@ -63,9 +63,16 @@ Eigen::VectorXd slope_of_number(const ForwardModel& dear, const Trial& centre, c
   return slopes.slope;
 }
 
+/// What one value of an amplitude changes.
+struct Stamped {
+  double value = 0.0;
+  Eigen::VectorXd change;
+};
+
 /// Switches one effect on, further and further until it is clear and half as far says the same slope.
 Eigen::VectorXd slope_of_effect(const ForwardModel& dear, const Trial& centre, const Eigen::VectorXd& here,
-                                std::size_t effect, const SurrogateOptions& options, SlopeCheck& check) {
+                                std::size_t effect, const SurrogateOptions& options, SlopeCheck& check,
+                                std::vector<Stamped>& stamped) {
   const Candidate& candidate = dear.candidates[effect];
   const Unknown& amplitude = candidate.numbers.front();
   const double off = amplitude.prior.value_at(0.0);
@@ -97,6 +104,8 @@ Eigen::VectorXd slope_of_effect(const ForwardModel& dear, const Trial& centre, c
     }
     const TwoSlopes slopes = two_slopes(here, full, half, check.step);
     check.disagreement = slopes.disagreement;
+    stamped.push_back({off + 0.5 * check.step, half - here});
+    stamped.push_back({off + check.step, full - here});
     if (check.disagreement <= options.disagreement) return slopes.slope;
   }
   check.refused =
@@ -143,14 +152,32 @@ Surrogate affine_surrogate(const ForwardModel& dear, const SurrogateOptions& opt
             ? slope_of_number(dear, centre, here, k, surrogate.checks.emplace_back())
             : Eigen::VectorXd::Zero(here.size());
   std::vector<Eigen::VectorXd> slopes;
+  std::vector<double> off;
   surrogate.model.baseline = dear.baseline;
   for (std::size_t effect = 0; effect < dear.candidates.size(); ++effect) {
     SlopeCheck& check = surrogate.checks.emplace_back();
-    Eigen::VectorXd slope = slope_of_effect(dear, centre, here, effect, options, check);
-    if (!check.refused.empty()) continue;
-    surrogate.model.candidates.push_back(dear.candidates[effect]);
-    surrogate.dear.push_back(effect);
-    slopes.push_back(std::move(slope));
+    std::vector<Stamped> stamped;
+    Eigen::VectorXd slope = slope_of_effect(dear, centre, here, effect, options, check, stamped);
+    const auto add = [&](Candidate candidate, Eigen::VectorXd column) {
+      surrogate.model.candidates.push_back(std::move(candidate));
+      surrogate.dear.push_back(effect);
+      off.push_back(dear.candidates[effect].numbers.front().prior.value_at(0.0));
+      slopes.push_back(std::move(column));
+    };
+    if (check.refused.empty()) {
+      add(dear.candidates[effect], std::move(slope));
+      continue;
+    }
+    // Without a slope it is a rival still: at each value that was run, where the change is exact.
+    check.values = static_cast<int>(stamped.size());
+    for (const Stamped& one : stamped) {
+      Candidate choice = dear.candidates[effect];
+      choice.numbers.front().prior = {.kind = Prior::Kind::fixed, .centre = one.value};
+      choice.log_weight -= std::log(static_cast<double>(stamped.size()));
+      choice.detail = fmt::format("{} = {:g}", check.key, one.value);
+      add(std::move(choice),
+          one.change / (one.value - dear.candidates[effect].numbers.front().prior.value_at(0.0)));
+    }
   }
   const auto count = std::ssize(slopes);
   affine.effect_slopes.resize(here.size(), count);
@@ -158,7 +185,7 @@ Surrogate affine_surrogate(const ForwardModel& dear, const SurrogateOptions& opt
   for (Eigen::Index e = 0; e < count; ++e) {
     const auto at = static_cast<std::size_t>(e);
     affine.effect_slopes.col(e) = slopes[at];
-    affine.off[e] = surrogate.model.candidates[at].numbers.front().prior.value_at(0.0);
+    affine.off[e] = off[at];
   }
   affine.amplitudes = affine.off;
   surrogate.model.predict = affine;
@@ -200,7 +227,8 @@ ForwardModel relinearised(const ForwardModel& dear, const Surrogate& surrogate, 
     affine.amplitudes[candidate] = trial.effects[e].second[0];
     // A tenth of what it is: near enough, and far above what the solver leaves.
     const double step = 0.1 * (affine.amplitudes[candidate] - affine.off[candidate]);
-    if (step == 0.0) continue;
+    const Candidate& effect = surrogate.model.candidates[trial.effects[e].first];
+    if (step == 0.0 || !effect.numbers.front().prior.is_free()) continue;
     Trial moved = trial;
     moved.effects[e].second[0] += step;
     affine.effect_slopes.col(candidate) =

@@ -18,13 +18,14 @@ struct SlopeCheck {
   double step = 0.0;          ///< of the number; the second size is half of it
   double change = 0.0;        ///< largest |change| of ln F at the step
   double disagreement = 0.0;  ///< |slope of the step - slope of half the step| / the latter, as lengths
-  std::string refused;        ///< why an effect is not searched for; "" where it is
+  std::string refused;        ///< why an effect is not searched along its amplitude; "" where it is
+  int values = 0;             ///< of an effect without a slope: at how many values it is tried
 };
 
 struct SurrogateOptions {
-  double disagreement = 0.1;       ///< beyond which an effect's slope is refused
-  double clear_change = 0.01;      ///< of ln F somewhere: the step grows until it makes as much and agrees ...
-  double farthest = 3.0;           ///< ... or reaches this coordinate of the prior
+  double disagreement = 0.1;   ///< beyond which an effect's slope is refused
+  double clear_change = 0.01;  ///< of ln F somewhere: the step grows until it makes as much and agrees ...
+  double farthest = 3.0;       ///< ... or reaches this coordinate of the prior
   double smallest_change = 0.001;  ///< of ln F; an effect that makes less at the farthest step is not seen
 };
 

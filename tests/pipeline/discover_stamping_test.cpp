@@ -279,7 +279,16 @@ TEST_CASE("a slope that two step sizes do not agree on within a tenth is refused
     CHECK(inertia.disagreement == Approx(disagreement(bend, inertia.step)).epsilon(1e-6));
     const bool kept = inertia.disagreement <= 0.1;
     CHECK(kept == (bend == 1e-3));
-    CHECK(surrogate.model.candidates.size() == (kept ? 3u : 2u));
+    // Refused, it stays a rival at the values that were run: three steps and their halves, less what is
+    // unseen.
+    CHECK(inertia.values == (kept ? 0 : 4));
+    CHECK(surrogate.model.candidates.size() == (kept ? 3u : 6u));
+    for (std::size_t c = 1; !kept && c < 5; ++c) {
+      const double value = surrogate.model.candidates[c].numbers[0].prior.centre;
+      const Trial there = trial_of(0.3, 0.2, {{c, value}});
+      CHECK(worst(surrogate.model.predict(there), stand_in(bend).predict(surrogate.for_dear(there))) < 1e-9);
+      CHECK(surrogate.model.candidates[c].log_weight == Approx(-std::log(4.0)));
+    }
     CHECK((inertia.refused.find("differ by") != std::string::npos) == !kept);
     // The one after it in the list keeps its own name and slope.
     const Trial grid = trial_of(0.3, 0.2, {{surrogate.model.candidates.size() - 1, 1.0}});
