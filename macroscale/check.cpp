@@ -177,6 +177,8 @@ Problems check(const StampingSpec& spec) {
            fmt::format("{:g}", artefact.mass_scaling), "must be > 0", "1 is true mass.");
   f.demand(artefact.stabilisation >= 0.0, "artefact.stabilisation.range"_rule, "artefact.stabilisation",
            fmt::format("{:g} N s/m^3", artefact.stabilisation), "must be >= 0", "0 is off.");
+  f.demand(shear_rate >= 0.0, "effects.shear_rate.factor.range"_rule, "effects.shear_rate.factor",
+           fmt::format("{:g}", shear_rate), "must be >= 0", "1 is what weave and melt give, 0 is off.");
   return f.take();
 }
 

@@ -29,7 +29,7 @@ struct Scene {
   double slip_smoothing = 1e-5;       ///< eps_v [m/s]
   double mass_scaling = 1.0;          ///< artefact; 1 = true mass
   double stabilisation = 0.0;         ///< artefact [N s/m^3]
-  bool shear_rate = true;
+  double shear_rate = 1.0;            ///< factor on the rate-dependent shear resistance; 0 is off
   ContactPressure contact_pressure = ContactPressure::real;
 
   int loaded_tools() const {

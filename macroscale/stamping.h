@@ -91,7 +91,7 @@ struct StampingSpec {
   BinderSpec binder;
   ProcessSpec process;
   ArtefactSpec artefact;
-  bool shear_rate = true;  ///< master switch of the rate-dependent shear resistance
+  double shear_rate = 1.0;  ///< factor on the rate-dependent shear resistance; 0 is off [-]
   ContactPressure contact_pressure = ContactPressure::real;
 };
 

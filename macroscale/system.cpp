@@ -106,8 +106,9 @@ CornerLaw System::corner_law(const StepData& step) const {
   law.area = scene_.blank.corner_area();
   law.length_warp = scene_.blank.spacing[0];
   law.length_weft = scene_.blank.spacing[1];
-  if (scene_.shear_rate)
-    law.rate_consistency = scene_.fabric->shear_rate.consistency_at(scene_.blank_temperature);
+  if (scene_.shear_rate > 0.0)
+    law.rate_consistency =
+        scene_.shear_rate * scene_.fabric->shear_rate.consistency_at(scene_.blank_temperature);
   law.rate_index = scene_.fabric->shear_rate.index;
   law.time_step = step.dt;
   return law;

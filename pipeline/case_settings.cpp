@@ -268,7 +268,8 @@ macroscale::StampingSpec stamping_of(const Settings& settings, const std::filesy
   stamping.process = process_of(settings);
   take(settings, "artefact.mass_scaling", stamping.artefact.mass_scaling);
   take(settings, "artefact.stabilisation", stamping.artefact.stabilisation);
-  stamping.shear_rate = !settings.is("fabric.shear_rate", "off");
+  take(settings, "effects.shear_rate.factor", stamping.shear_rate);
+  if (settings.is("fabric.shear_rate", "off")) stamping.shear_rate = 0.0;
   stamping.contact_pressure = contact_pressure_of(settings);
   return stamping;
 }

@@ -68,12 +68,15 @@ void add_export(CLI::App& program, ExportOptions& options) {
 }
 
 void add_discover(CLI::App& program, DiscoverOptions& options) {
-  CLI::App* command =
-      add_run(program, "discover", "What the model misses in measured coupons, by name", options.run);
+  CLI::App* command = add_run(program, "discover",
+                              "What the model misses in measured coupons or stampings, by name", options.run);
+  command->add_flag("--resume", options.run.resume,
+                    "Go on where an earlier start ended; stampings that the cache holds are never run again");
   CLI::Option* file = command->get_option("file")->required(false);
   CLI::Option* data =
       command
-          ->add_option("--data", options.data, "Table of coupons (CSV); FILE.yaml beside it tells of the rig")
+          ->add_option("--data", options.data, "Table of coupons, or of stampings where it has punch_force_N (CSV); FILE.yaml beside it "
+                       "tells of the rig")
           ->check(CLI::ExistingFile);
   CLI::Option* plan = command
                           ->add_option("--plan", options.run.file,

@@ -390,8 +390,12 @@ std::vector<Key> effect_keys() {
        .used_when = on,
        .help = "term: mu + slope (T - reference); factor: mu (1 + slope (T - reference))."},
   };
+  keys.push_back({.path = "effects.shear_rate.factor", .type = KeyType::quantity, .presence = required,
+                  .range = "[0, 1000]", .stage = Stage::stamping,
+                  .used_when = "effects.shear_rate fabric.shear_rate=on",
+                  .help = "On the rate-dependent shear resistance that the weave and its melt give; 1 changes nothing, 0 is off."});
   const std::vector<std::string> to_come{
-      "shear_rate", "shear_locking",
+      "shear_locking",
       "tension_shear_coupling", "bending", "tow_rate_stiffening", "inter_tow_slip", "crimp_straightening",
       "shear_thermal_softening", "binder_tilt", "punch_misalignment", "blank_cooling", "press_compliance",
       "inertia", "binder_force_level", "initial_orientation", "normal_force_relaxation", "load_cell_offset",

@@ -13,6 +13,7 @@
 #include "friction/parameters.h"
 #include "pipeline/config_tree.h"
 #include "pipeline/discover_report.h"
+#include "pipeline/discover_stamping.h"
 #include "pipeline/run_folder.h"
 #include "pipeline/stages.h"
 
@@ -68,6 +69,8 @@ std::vector<discover::Unknown> baseline_of(const friction::Model& model, const D
   return baseline;
 }
 
+}  // namespace
+
 std::vector<discover::EffectFile> library_of(const DiscoverSpec& spec,
                                              const std::vector<fs::path>& own_effects, Problems& problems) {
   std::vector<discover::EffectFile> all = discover::built_in_effects();
@@ -96,12 +99,7 @@ std::vector<discover::EffectFile> library_of(const DiscoverSpec& spec,
   return chosen;
 }
 
-/// FILE.yaml beside FILE.csv: what the table itself cannot say.
-struct Sidecar {
-  std::optional<double> plate_area;
-  std::optional<int> faces;
-  std::string rig, provenance;
-};
+namespace {
 
 std::string in_one_line(const ConfigNode& node) {
   if (node.kind == ConfigNode::Kind::scalar) return node.text;
@@ -111,6 +109,8 @@ std::string in_one_line(const ConfigNode& node) {
     parts.push_back(fmt::format("{} {}", entry.key, in_one_line(entry.value)));
   return fmt::format("{}", fmt::join(parts, ", "));
 }
+
+}  // namespace
 
 Sidecar read_sidecar(const fs::path& data, Problems& problems) {
   Sidecar sidecar;
@@ -147,6 +147,8 @@ Sidecar read_sidecar(const fs::path& data, Problems& problems) {
     sidecar.provenance = in_one_line(*provenance);
   return sidecar;
 }
+
+namespace {
 
 void demand_variety(const friction::CouponData& data, Problems& problems) {
   if (data.conditions >= 2) return;
@@ -219,7 +221,9 @@ void print_next(const discover::Proposal& proposal) {
                proposal.rivals[i].name, proposal.rivals[j].name);
 }
 
-void print(const DiscoveryRecord& record, const fs::path& folder) {
+}  // namespace
+
+void print_discovery(const DiscoveryRecord& record, const fs::path& folder) {
   const discover::CouponFindings& f = record.findings;
   fmt::print("{}", in_words(f.decision.answer));
   if (f.decision.answer == discover::Answer::named ||
@@ -244,8 +248,6 @@ void print(const DiscoveryRecord& record, const fs::path& folder) {
   for (const std::string& note : record.notes) fmt::print("{}\n", note);
   fmt::print("results {}\n", folder.string());
 }
-
-}  // namespace
 
 DiscoveryRecord discover_case_in(const Case& a_case, const fs::path& data,
                                  const std::vector<fs::path>& own_effects) {
@@ -312,6 +314,7 @@ Settings discovered_settings(const Case& a_case, const DiscoveryRecord& record) 
 
 int discover_case(const DiscoverOptions& options) {
   if (!options.design.empty()) return plan_coupons(options);
+  if (discover::is_stamping_table(read_text_file(options.data))) return discover_stamping(options);
   Case a_case = read_friction_part(options.run);
   if (!a_case.discover) a_case.discover.emplace();
   if (options.seed) a_case.discover->seed = *options.seed;
@@ -328,7 +331,7 @@ int discover_case(const DiscoverOptions& options) {
   folder.write("discover/next_experiments.csv", next_experiments_csv(record));
   for (const std::string& reason : record.findings.decision.reasons) folder.log(reason);
   folder.close(a_case, {});
-  if (options.run.print) print(record, folder.path());
+  if (options.run.print) print_discovery(record, folder.path());
   return exit_done;
 }
 

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <filesystem>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -24,6 +25,23 @@ struct DiscoveryRecord {
   discover::Proposal proposal;  ///< what to pull next
   std::vector<std::string> notes;
 };
+
+/// FILE.yaml beside FILE.csv: what the table itself cannot say.
+struct Sidecar {
+  std::optional<double> plate_area;  ///< [m^2]
+  std::optional<int> faces;
+  std::string rig, provenance;
+};
+/// Empty where there is none. What is wrong with it goes to `problems`.
+Sidecar read_sidecar(const std::filesystem::path& data, Problems& problems);
+
+/// The effects that the case asks for: of the library, with the user's own in it.
+std::vector<discover::EffectFile> library_of(const DiscoverSpec& spec,
+                                             const std::vector<std::filesystem::path>& own_effects,
+                                             Problems& problems);
+
+/// Verdict, reasons, gap and notes on standard output.
+void print_discovery(const DiscoveryRecord& record, const std::filesystem::path& folder);
 
 /// Looks for what the case's model misses in measured coupons.
 /// @param own_effects  effect files beside the library

@@ -188,6 +188,27 @@ Prior usual_prior(const friction::ModelNumber& number) {
   return prior;
 }
 
+void judge(CouponFindings& findings, const Observations& observations, const CouponQuestion& question) {
+  findings.result = search(findings.forward, observations, question.search);
+  const Whitened& whitened = *findings.result.baseline.data;
+  const BesideBaseline beside(findings.result.baseline.jacobian);
+  findings.contrasts = contrasts_of(findings.training, whitened, beside);
+  findings.largest = largest_of_noise(findings.contrasts, findings.result.signatures, whitened.size(), 999,
+                                      seed_of(question.seed, Draw::noise));
+  findings.locations = locate(findings.contrasts, findings.result.gap, findings.largest);
+  pass_gate(findings);
+
+  const MapFit* best = best_with_effects(findings.result);
+  findings.evidence.scatter_known = findings.noise.sample_source != friction::Scatter::Source::assumed;
+  findings.evidence.gap_shapes = shapes_of(findings.training, findings.result.baseline, question.tow_pitch);
+  if (best != nullptr) {
+    findings.evidence.rest_shapes = shapes_of(findings.training, *best, question.tow_pitch);
+    findings.evidence.stability =
+        stability_of(findings.result, findings.training, seed_of(question.seed, Draw::stability));
+  }
+  findings.decision = decide(findings.forward, findings.result, findings.evidence, question.verdict);
+}
+
 CouponFindings discover_in_coupons(const CouponQuestion& question, const friction::CouponData& data) {
   CouponFindings findings;
   int stretches = 1;
@@ -223,28 +244,10 @@ CouponFindings discover_in_coupons(const CouponQuestion& question, const frictio
   observations.coordinates = form_coordinates(findings.training, question.noise.effect_form_length);
   add_mislabelled(findings, question, first);
 
-  findings.result = search(findings.forward, observations, question.search);
-  const Whitened& whitened = *findings.result.baseline.data;
-  const BesideBaseline beside(findings.result.baseline.jacobian);
-  findings.contrasts = contrasts_of(findings.training, whitened, beside);
-  findings.largest = largest_of_noise(findings.contrasts, findings.result.signatures, whitened.size(), 999,
-                                      seed_of(question.seed, Draw::noise));
-  findings.locations = locate(findings.contrasts, findings.result.gap, findings.largest);
-  pass_gate(findings);
-
+  judge(findings, observations, question);
   findings.isolability =
       isolability_of(findings.forward, findings.result.baseline, observations,
                      {.seed = seed_of(question.seed, Draw::isolability), .prior = question.search});
-
-  const MapFit* best = best_with_effects(findings.result);
-  findings.evidence.scatter_known = findings.noise.sample_source != friction::Scatter::Source::assumed;
-  findings.evidence.gap_shapes = shapes_of(findings.training, findings.result.baseline, question.tow_pitch);
-  if (best != nullptr) {
-    findings.evidence.rest_shapes = shapes_of(findings.training, *best, question.tow_pitch);
-    findings.evidence.stability =
-        stability_of(findings.result, findings.training, seed_of(question.seed, Draw::stability));
-  }
-  findings.decision = decide(findings.forward, findings.result, findings.evidence, question.verdict);
 
   const auto numbers = static_cast<std::size_t>(
       findings.decision.named.empty() ? start.size()

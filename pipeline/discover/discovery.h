@@ -63,6 +63,10 @@ struct CouponFindings {
 /// @throws NumericalError  if the baseline itself has no finite prediction
 CouponFindings discover_in_coupons(const CouponQuestion& question, const friction::CouponData& data);
 
+/// Search, gate, location, stability and verdict, of training cells, noise and forward model that are there:
+/// the part that assumes nothing of what was measured.
+void judge(CouponFindings& findings, const Observations& observations, const CouponQuestion& question);
+
 /// Prior of a number that the user says nothing of: positive numbers log-normal about the case's value with a
 /// factor of 2, others normal with their own size or 0.1; power_index within 0.04 and activation_energy
 /// within a tenth (what rheology knows: docs/theory/discovery.md).

@@ -16,6 +16,7 @@ struct Record {
   RunOptions run;
   CheckOptions check;
   CalibrateOptions calibrate;
+  DiscoverOptions discover;
   ExportOptions exported;
 };
 
@@ -41,6 +42,12 @@ int call(const std::vector<std::string>& arguments, Record& record) {
                                     record.called = "calibrate";
                                     record.calibrate = options;
                                     return 9;
+                                  },
+                              .discover =
+                                  [&](const DiscoverOptions& options) {
+                                    record.called = "discover";
+                                    record.discover = options;
+                                    return 11;
                                   },
                               .export_law =
                                   [&](const ExportOptions& options) {
@@ -93,6 +100,12 @@ TEST_CASE("each subcommand reaches its function", "[pipeline][command_line]") {
   CHECK(record.calibrate.run.file == "a.yaml");
   CHECK(record.calibrate.run.output == "out/x");
   CHECK(record.calibrate.data == data);
+  CHECK(call({"discover", "a.yaml", "--data", data, "--seed", "3", "--resume"}, record) == 11);
+  CHECK(record.called == "discover");
+  CHECK(record.discover.run.file == "a.yaml");
+  CHECK(record.discover.run.resume);
+  CHECK(record.discover.data == data);
+  CHECK(record.discover.seed == 3);
   CHECK(call({"export", "out/x", "--to", "abaqus"}, record) == 10);
   CHECK(record.called == "export");
   CHECK(record.exported.run.file == "out/x");

@@ -83,6 +83,22 @@ TEST_CASE("every friction effect is off at its off value to the byte, and linear
   CHECK(at == usual.size());
 }
 
+TEST_CASE("the factor on the rate of shear is 1 and 0 to the byte at the ends of its switch and linear when tiny",
+          "[pipeline][effect]") {
+  const auto with_factor = [](double factor) {
+    return run("effects: {shear_rate: {factor: " + pipeline::shortest(factor) + "}}\n");
+  };
+  const std::vector<std::string> switched_off{"fabric.shear_rate=off"};
+  const Run off = run("", switched_off);
+  CHECK((with_factor(1.0).history == run("").history));
+  CHECK((with_factor(0.0).history == off.history));
+  CHECK((run("effects: {shear_rate: {factor: 2}}\n", switched_off).history == off.history));
+  const double once = with_factor(1e-5).force - off.force, twice = with_factor(2e-5).force - off.force;
+  CAPTURE(once, twice);
+  CHECK(once != 0.0);
+  CHECK(twice == Approx(2.0 * once).epsilon(0.01));
+}
+
 TEST_CASE("effects that draw on the film's conduction are off to the byte and linear when tiny as well",
           "[pipeline][effect]") {
   const std::vector<std::string> conduction{"friction.film_temperature=conduction"};
