@@ -42,6 +42,8 @@ void apply_to_coefficient(const Effects& effects, const Inputs& inputs, const Se
   multiply(effects.stick_slip);
   multiply(effects.orientation);
   if (is_on(effects.adhesion)) mu = mu + term_of(*effects.adhesion, inputs, area);
+  if (is_on(effects.film_squeeze_out) && effects.film_squeeze_out->contact != 0.0)
+    multiply(effects.film_squeeze_out);
   multiply(effects.dwell_ageing);
   multiply(effects.solidification);
   multiply(effects.wear);
@@ -56,7 +58,8 @@ EffectStages stages_of(const Effects& effects) {
   const bool coefficient =
       is_on(effects.static_peak) || is_on(effects.sliding_evolution) || is_on(effects.stick_slip) ||
       is_on(effects.orientation) || is_on(effects.adhesion) || is_on(effects.dwell_ageing) ||
-      is_on(effects.solidification) || is_on(effects.wear) || is_on(effects.boundary_lubrication);
+      is_on(effects.solidification) || is_on(effects.wear) || is_on(effects.boundary_lubrication) ||
+      (is_on(effects.film_squeeze_out) && effects.film_squeeze_out->contact != 0.0);
   return {.film = film, .coefficient = coefficient};
 }
 

@@ -12,6 +12,7 @@
 #include "friction/calibration/model_numbers.h"
 #include "friction/parameters.h"
 #include "pipeline/config_tree.h"
+#include "pipeline/discover/contrasts.h"
 #include "pipeline/discover_report.h"
 #include "pipeline/discover_stamping.h"
 #include "pipeline/run_folder.h"
@@ -150,6 +151,39 @@ Sidecar read_sidecar(const fs::path& data, Problems& problems) {
 
 namespace {
 
+/// A table that holds another model's forces beside the measured ones: what that model has the wrong sign of.
+std::vector<std::string> notes_on_other_model(const fs::path& data) {
+  const std::string text = read_text_file(data);
+  const std::string_view header = std::string_view(text).substr(0, text.find('\n'));
+  if (header.find("force_paper_model_N") == std::string_view::npos) return {};
+  std::vector<friction::FrictionTestRow> rows = friction::parse_friction_table(text, data.string());
+  std::erase_if(rows, [](const auto& row) { return !row.measured_force || !row.paper_model_force; });
+  std::vector<double> measured, modelled;
+  for (const friction::FrictionTestRow& row : rows) {
+    measured.push_back(*row.measured_force);
+    modelled.push_back(*row.paper_model_force);
+  }
+  const discover::Sensitivities nature = discover::sensitivities_of(rows, measured),
+                                other = discover::sensitivities_of(rows, modelled);
+  std::vector<std::string> notes;
+  const auto compare = [&](const char* name, const std::optional<double>& a, const std::optional<double>& b) {
+    if (a && b && *a * *b < 0.0)
+      notes.push_back(
+          fmt::format("The model in column force_paper_model_N has the wrong sign in {}: slope of ln mu "
+                      "{:+.3g}, measured {:+.3g}.",
+                      name, *b, *a));
+  };
+  compare("ln velocity", nature.velocity, other.velocity);
+  compare("ln normal force", nature.normal_force, other.normal_force);
+  compare("tool temperature", nature.tool_temperature, other.tool_temperature);
+  if (nature.can_be_hersey() && !other.can_be_hersey())
+    notes.push_back(
+        fmt::format("Its slopes would ask for a power-law index of {:.2f}, which no law of one Hersey "
+                    "number has; the measured ones ask for {:.2f}.",
+                    *other.implied_index(), nature.implied_index().value_or(0.0)));
+  return notes;
+}
+
 void demand_variety(const friction::CouponData& data, Problems& problems) {
   if (data.conditions >= 2) return;
   problems.push_back({"discover.data.alike"_rule, "data", "",
@@ -280,7 +314,8 @@ DiscoveryRecord discover_case_in(const Case& a_case, const fs::path& data,
   record.proposal =
       discover::propose(record.question, record.findings, discover::candidate_grid(record.findings.campaign),
                         {.seed = record.question.seed});
-  record.notes = record.findings.notes;
+  record.notes = notes_on_other_model(data);
+  record.notes.insert(record.notes.end(), record.findings.notes.begin(), record.findings.notes.end());
   record.notes.insert(record.notes.end(), a_case.notes.begin(), a_case.notes.end());
   return record;
 }

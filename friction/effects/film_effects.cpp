@@ -64,6 +64,10 @@ Sensitive thickness_with(const FilmSqueezeOut& effect, double thickness, const I
   return thickness * pow(1.0 + effect.rate * inputs.pressure * inputs.dwell, -0.5);
 }
 
+Sensitive factor_of(const FilmSqueezeOut& effect, const Inputs& inputs) {
+  return 1.0 + effect.contact * (1.0 - thickness_with(effect, 1.0, inputs));
+}
+
 Sensitive area_with(const PressureDependentArea& effect, const Inputs& inputs) {
   const FlooredPressure p = floored(inputs.pressure.value);
   return inputs.area_fraction *

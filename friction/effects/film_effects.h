@@ -27,18 +27,20 @@ struct PressureDependentArea {
   double reference_pressure = 150e3;  ///< p_ref [Pa], > 0
 };
 
-/// Effect F9: film squeezed out in contact, h = h0 (1 + B p t)^(-1/2) (Stefan, Newtonian).
+/// Effect F9: film squeezed out in contact, h = h0 (1 + B p t)^(-1/2) (Stefan, Newtonian). The thinner film
+/// shears faster (through Hs), and lets fibres through to the tool: mu *= 1 + A (1 - h/h0).
 struct FilmSqueezeOut {
-  double rate = 0.0;  ///< B [1/(Pa s)], >= 0; 0 = off
+  double rate = 0.0;     ///< B [1/(Pa s)], >= 0; 0 = off
+  double contact = 0.0;  ///< A [-], > -1: growth of mu when the film is gone; 0: through Hs alone
 };
 
 /// Effect F12: the film heats itself, eta *= asinh(sqrt x)/sqrt(x (1 + x)) with x = A Na/8 and the Nahme
 /// number Na = beta eta U^2/k, beta = -d ln a/dT (plane Couette flow between walls at the film's temperature;
 /// Nahme 1940). A = 1: both walls held; 4: one of them adiabatic; up to 8 L/h where the heat leaves through a
-/// ply of thickness L. Walls warm as the pull goes on: A is multiplied by S of effect F1 at s/(U t_s), t_s = 0
-/// at once. With a film conduction k is the melt's
-/// there and A is multiplied by 12 times its heating rise (1/12 between held walls) after the time s/U for
-/// which the film has been sheared, so that A = 1 is the whole of it.
+/// ply of thickness L. Walls warm as the pull goes on: A is multiplied by S of effect F1 at s/(U t_s), t_s =
+/// 0 at once. With a film conduction k is the melt's there and A is multiplied by 12 times its heating rise
+/// (1/12 between held walls) after the time s/U for which the film has been sheared, so that A = 1 is the
+/// whole of it.
 struct ShearHeating {
   double amplitude = 0.0;      ///< A [-], >= 0; 0 = off
   double conductivity = 0.19;  ///< k [W/(m K)], > 0
@@ -59,6 +61,8 @@ Sensitive settled_share(const Sensitive& time_over_settling);
 Sensitive temperature_with(const ToolTemperatureFilm& effect, const TemperatureLaw& law,
                            const PowerLawFilm& film, const Inputs& inputs);
 Sensitive thickness_with(const FilmSqueezeOut& effect, double thickness, const Inputs& inputs);
+/// On mu: solid contact through the thinned film.
+Sensitive factor_of(const FilmSqueezeOut& effect, const Inputs& inputs);
 Sensitive area_with(const PressureDependentArea& effect, const Inputs& inputs);
 Sensitive viscosity_with(const ViscosityPlateau& effect, const Sensitive& viscosity,
                          const Sensitive& log_shift);
@@ -101,11 +105,16 @@ struct About<PressureDependentArea> {
 template <>
 struct About<FilmSqueezeOut> {
   static constexpr const char* id = "film_squeeze_out";
-  static constexpr const char* equation = "h = h0 (1 + B p t)^(-1/2)";
+  static constexpr const char* equation = "h = h0 (1 + B p t)^(-1/2), mu *= 1 + A (1 - h/h0)";
   static constexpr const char* source = "Stefan's squeeze film; B a prior";
   static constexpr std::array fields{
       Field<FilmSqueezeOut>{"rate", "1/(Pa s)", &FilmSqueezeOut::rate, not_negative,
-                            "B of the thinning under pressure; 0 1/(Pa s) is off."}};
+                            "B of the thinning under pressure; 0 1/(Pa s) is off."},
+      Field<FilmSqueezeOut>{"contact",
+                            "",
+                            &FilmSqueezeOut::contact,
+                            {-1.0, 10.0, true, false},
+                            "Growth of mu by solid contact when the film is gone; 0: by the film alone."}};
 };
 template <>
 struct About<ShearHeating> {

@@ -230,6 +230,15 @@ TEST_CASE("slopes agree with differences at the knees of the laws", "[friction][
       CHECK(worst_gap(model, base, 1.01) > 1e-4);  // the check can fail
     }
   }
+  SECTION("solid contact through a film that drains") {
+    Model model = model_of(HerseyPower{.scale = 0.325, .exponent = 0.136});
+    for (const double contact : {-0.5, 0.3, 2.0}) {
+      model.effects.film_squeeze_out = FilmSqueezeOut{.rate = 1e-4, .contact = contact};
+      CAPTURE(contact);
+      CHECK(worst_gap(model, base) < 1e-6);
+      CHECK(worst_gap(model, base, 1.01) > 1e-4);  // the check can fail
+    }
+  }
   SECTION("shear heating while the walls warm") {
     Model model = model_of(HerseyPower{.scale = 0.325, .exponent = 0.136});
     for (const double settling : {1e-4, 0.05, 5.0}) {

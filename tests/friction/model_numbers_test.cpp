@@ -68,6 +68,8 @@ TEST_CASE("slopes of mu in every number of every effect agree with central diffe
   for (const auto& effect : heddle::test::every_effect()) {
     Model model{.law = HerseyPower{.scale = 0.325, .exponent = 0.136}, .film = {}, .effects = {}, .box = {}};
     effect.set(model.effects, effect.usual);
+    // At 0 s walls are warm at once, where mu has no slope to the time: it goes as its root.
+    if (model.effects.shear_heating) model.effects.shear_heating->settling = 0.05;
     CAPTURE(effect.id);
     REQUIRE(check_combinations(model).empty());
     check_all_numbers(model);

@@ -40,6 +40,8 @@ const std::vector<BadFile> bad_files{
     {"calibrate_prior_of_a_held_number",
      {{"calibrate.prior.resin.power_index.not_fitted", 7},
       {"calibrate.bounds.friction.exponent.not_fitted", 9}}},
+    {"discover_priors_of_other_numbers",
+     {{"discover.prior.spread", 8}, {"discover.prior.not_moved", 9}}},
     {"calibrate_unknown_numbers", {{"calibrate.parameters.name", 5}}},
     {"choice", {{"fabric.shear_rate.choice", 4}}},
     {"consistency_without_n", {{"resin.consistency.unit", 4}}},

@@ -165,6 +165,8 @@ const char* const of_coupons = "friction/coupon_data_test.cpp";
 const char* const of_stampings = "pipeline/discover_stamping_test.cpp";
 const char* const of_fit = "friction/coupon_fit_test.cpp";
 const char* const of_design = "pipeline/discover/plan_test.cpp";
+const char* const of_discovery = "pipeline/discover/discovery_test.cpp";
+const char* const of_effects = "pipeline/discover/effects_test.cpp";
 const char* const of_outline = "macroscale/outline_test.cpp";
 
 const std::vector<Elsewhere> elsewhere{
@@ -353,6 +355,32 @@ const std::vector<Elsewhere> elsewhere{
     {"calibrate.friction", "pipeline/calibrate_test.cpp",
      "a calibration without friction, or of numbers that do not act, is refused",
      "of a command, not of a configuration"},
+    {"discover.data.alike", of_discovery, "tables that cannot be discovered in are refused with the reason",
+     "of --data or of a command, not of a configuration"},
+    {"discover.sidecar.unknown", of_discovery, "tables that cannot be discovered in are refused with the reason",
+     "of --data or of a command, not of a configuration"},
+    {"discover.sidecar.plate_area", of_discovery, "tables that cannot be discovered in are refused with the reason",
+     "of --data or of a command, not of a configuration"},
+    {"discover.sidecar.faces", of_discovery, "tables that cannot be discovered in are refused with the reason",
+     "of --data or of a command, not of a configuration"},
+    {"discover.parameters.acts", of_discovery, "tables that cannot be discovered in are refused with the reason",
+     "of --data or of a command, not of a configuration"},
+    {"discover.effects.known", of_discovery, "tables that cannot be discovered in are refused with the reason",
+     "of --data or of a command, not of a configuration"},
+    {"discover.friction", of_discovery, "tables that cannot be discovered in are refused with the reason",
+     "of --data or of a command, not of a configuration"},
+    {"discover.effect.missing", of_effects, "an effect file says what is wrong with it, all at once",
+     "of --effect, not of a configuration"},
+    {"discover.effect.unknown", of_effects, "an effect file says what is wrong with it, all at once",
+     "of --effect, not of a configuration"},
+    {"discover.effect.stage", of_effects, "an effect file says what is wrong with it, all at once",
+     "of --effect, not of a configuration"},
+    {"discover.effect.prior", of_effects, "an effect file says what is wrong with it, all at once",
+     "of --effect, not of a configuration"},
+    {"discover.effect.off", of_effects, "an effect file says what is wrong with it, all at once",
+     "of --effect, not of a configuration"},
+    {"discover.effect.centre", of_effects, "an effect file says what is wrong with it, all at once",
+     "of --effect, not of a configuration"},
     {"discover.design.column.unknown", of_design, "a design is refused with every problem and its line",
      "of --design, not of a configuration"},
     {"discover.design.column.missing", of_design, "a design is refused with every problem and its line",

@@ -62,5 +62,6 @@ TEST_CASE("the mass of a cut normal is that of its two ends, far out in a tail t
   CHECK(discover::log_normal_mass(z, INFINITY) == Approx(tail).epsilon(1e-9));
   CHECK(discover::log_normal_mass(-INFINITY, -z) == Approx(tail).epsilon(1e-9));
   CHECK(std::abs(discover::log_normal_mass(z, INFINITY) - (tail + 0.01)) > 1e-3);  // the check can fail
-  CHECK((Prior{.kind = Prior::Kind::half_normal, .scale = 3.0, .low = 0.0}.log_mass()) == Approx(std::log(0.5)));
+  CHECK((Prior{.kind = Prior::Kind::half_normal, .scale = 3.0, .low = 0.0}.log_mass()) ==
+        Approx(std::log(0.5)));
 }
