@@ -25,8 +25,12 @@ class HypothesisPrior {
                        : hypothesis.size() == 1
                            ? std::log(options_.one_effect / ids_)
                            : std::log(options_.two_effects / (0.5 * ids_ * (ids_ - 1.0)));
-    for (const std::size_t effect : hypothesis) log_prior += model_.candidates[effect].log_weight;
-    return log_prior;
+    return log_prior + choice(hypothesis);
+  }
+  double choice(const Hypothesis& hypothesis) const {
+    double log_weight = 0.0;
+    for (const std::size_t effect : hypothesis) log_weight += model_.candidates[effect].log_weight;
+    return log_weight;
   }
 
  private:
@@ -104,7 +108,8 @@ const Scored* SearchResult::find(const Hypothesis& hypothesis) const {
 double SearchResult::best_gain() const {
   double best = -std::numeric_limits<double>::infinity();
   for (const Scored& one : scored)
-    if (!one.fit.hypothesis.empty()) best = std::max(best, one.fit.log_evidence - log_evidence_none);
+    if (!one.fit.hypothesis.empty())
+      best = std::max(best, one.fit.log_evidence + one.log_choice - log_evidence_none);
   return best;
 }
 
@@ -149,7 +154,8 @@ SearchResult search(const ForwardModel& model, const Observations& observations,
     MapFit exact = best_fit(model, data, {effect}, starts_of(model, result.baseline, signatures[effect]));
     singles[effect] = {.fit = with_form_error(model, observations, exact),
                        .exact = std::move(exact),
-                       .log_prior = prior.of({effect})};
+                       .log_prior = prior.of({effect}),
+                       .log_choice = prior.choice({effect})};
   });
   for (const std::vector<Signature>& of : signatures)
     if (const Signature* best = strongest(of)) result.signatures.push_back(*best);
@@ -174,7 +180,8 @@ SearchResult search(const ForwardModel& model, const Observations& observations,
       MapFit exact = map_fit(model, data, pairs[k], joined(result.baseline, first, second));
       fitted[k] = {.fit = with_form_error(model, observations, exact),
                    .exact = std::move(exact),
-                   .log_prior = prior.of(pairs[k])};
+                   .log_prior = prior.of(pairs[k]),
+                   .log_choice = prior.choice(pairs[k])};
     });
     for (Scored& pair : fitted)
       if (earns_its_place(result, pair, options)) result.scored.push_back(std::move(pair));

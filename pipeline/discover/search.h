@@ -28,6 +28,7 @@ struct Scored {
   MapFit fit;    ///< with the error of form of its effects: for evidence and for what is left over
   MapFit exact;  ///< forms taken as exact: the numbers to predict with
   double log_prior = 0.0;
+  double log_choice = 0.0;  ///< part of log_prior: one of many choices under an id (Candidate::log_weight)
   double probability = 0.0;
 };
 
@@ -41,7 +42,7 @@ struct SearchResult {
 
   const Scored& best() const { return scored.front(); }
   const Scored* find(const Hypothesis& hypothesis) const;
-  /// ln Bayes factor of the best hypothesis with effects against none.
+  /// ln Bayes factor of the best hypothesis with effects against none; a choice pays for the choosing.
   double best_gain() const;
 };
 
