@@ -45,7 +45,8 @@ double gaussian(double distance, double length) {
   return std::exp(-0.5 * x * x);
 }
 
-std::vector<FormCoordinate> form_coordinates(const std::vector<CouponCell>& cells, double length) {
+std::vector<FormCoordinate> form_coordinates(const std::vector<CouponCell>& cells, double length,
+                                             Eigen::Index centred_over) {
   std::vector<FormCoordinate> coordinates;
   for (const Coordinate& c : coordinates_of(cells)) {
     FormCoordinate form;
@@ -58,8 +59,9 @@ std::vector<FormCoordinate> form_coordinates(const std::vector<CouponCell>& cell
     for (Eigen::Index j = 0; j < size; ++j)
       form.likeness.col(j) = ((c.at.array() - c.at[j]).square() * (-0.5 / (length * length))).exp();
     // What is the same everywhere is the amplitude's own.
-    form.likeness.rowwise() -= form.likeness.colwise().mean().eval();
-    form.likeness.colwise() -= form.likeness.rowwise().mean().eval();
+    const Eigen::Index over = centred_over > 0 ? centred_over : size;
+    form.likeness.rowwise() -= form.likeness.topRows(over).colwise().mean().eval();
+    form.likeness.colwise() -= form.likeness.leftCols(over).rowwise().mean().eval();
     coordinates.push_back(std::move(form));
   }
   return coordinates;

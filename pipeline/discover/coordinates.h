@@ -28,7 +28,9 @@ double gaussian(double distance, double length);
 
 /// Over each coordinate a smooth error of form (Gaussian kernel). One coordinate at a time: a product of
 /// kernels would let the error wander from cell to cell, which no law's form does.
-std::vector<FormCoordinate> form_coordinates(const std::vector<CouponCell>& cells, double length);
+/// @param centred_over  the first so many observations, whose mean is taken out; 0: all
+std::vector<FormCoordinate> form_coordinates(const std::vector<CouponCell>& cells, double length,
+                                             Eigen::Index centred_over = 0);
 
 /// The sum over all coordinates, for plans and proposals, which do not ask what an effect depends on.
 /// @param centred_over  the first so many observations, whose mean it is; 0: all

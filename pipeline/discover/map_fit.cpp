@@ -253,23 +253,28 @@ double share_between(const Eigen::VectorXd& effect, const std::vector<int>& leve
   return total > 1e-12 ? between / total : 0.0;
 }
 
-/// Covariance of an effect's form over the coordinates that it depends on: an effect that does not see the
-/// tool temperature may not be wrong over it either. Designs are not balanced, so a tenth of the strongest
-/// dependence counts as none.
-Eigen::MatrixXd form_covariance(const Eigen::VectorXd& effect, const Observations& observations) {
+}  // namespace
+
+std::vector<double> form_weights(const Eigen::VectorXd& effect,
+                                 const std::vector<FormCoordinate>& coordinates) {
   constexpr double none = 0.1;
-  std::vector<double> share;
-  for (const FormCoordinate& c : observations.coordinates) share.push_back(share_between(effect, c.level));
-  const double strongest = *std::ranges::max_element(share);
-  Eigen::MatrixXd likeness = Eigen::MatrixXd::Zero(effect.size(), effect.size());
-  for (std::size_t k = 0; k < share.size(); ++k)
-    if (share[k] > none * strongest)
-      likeness += (share[k] / strongest - none) / (1.0 - none) * observations.coordinates[k].likeness;
-  const Eigen::VectorXd size = observations.form * effect;
-  return size.asDiagonal() * likeness * size.asDiagonal();
+  std::vector<double> weights;
+  for (const FormCoordinate& c : coordinates) weights.push_back(share_between(effect, c.level));
+  const double strongest = weights.empty() ? 0.0 : *std::ranges::max_element(weights);
+  for (double& weight : weights)
+    weight = weight > none * strongest ? (weight / strongest - none) / (1.0 - none) : 0.0;
+  return weights;
 }
 
-}  // namespace
+Eigen::MatrixXd form_covariance(const Eigen::VectorXd& effect, const std::vector<FormCoordinate>& coordinates,
+                                double form) {
+  const std::vector<double> weights = form_weights(effect, coordinates);
+  Eigen::MatrixXd likeness = Eigen::MatrixXd::Zero(effect.size(), effect.size());
+  for (std::size_t k = 0; k < weights.size(); ++k)
+    if (weights[k] > 0.0) likeness += weights[k] * coordinates[k].likeness;
+  const Eigen::VectorXd size = form * effect;
+  return size.asDiagonal() * likeness * size.asDiagonal();
+}
 
 MapFit with_form_error(const ForwardModel& model, const Observations& observations, const MapFit& fit,
                        const FitOptions& options) {
@@ -281,7 +286,8 @@ MapFit with_form_error(const ForwardModel& model, const Observations& observatio
     Trial without = fit.trial;
     without.effects.erase(without.effects.begin() + static_cast<std::ptrdiff_t>(k));
     const Eigen::VectorXd effect = whole - model.predict(without);
-    if (effect.allFinite()) covariance += form_covariance(effect, observations);
+    if (effect.allFinite())
+      covariance += form_covariance(effect, observations.coordinates, observations.form);
   }
   return map_fit(model, std::make_shared<const Whitened>(observations.value, covariance), fit.hypothesis,
                  fit.z, options);

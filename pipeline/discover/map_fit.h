@@ -67,6 +67,18 @@ MapFit best_fit(const ForwardModel& model, const std::shared_ptr<const Whitened>
                 const Hypothesis& hypothesis, const std::vector<Eigen::VectorXd>& starts,
                 const FitOptions& options = {});
 
+/// How far the form of an effect may be off over each coordinate, as share of the variance allowed: 1 for the
+/// one it depends on most, 0 for those it hardly sees. An effect that does not see the tool temperature may
+/// not be wrong over it either. Designs are not balanced, so a tenth of the strongest dependence counts as
+/// none.
+/// @param effect  what it does to the observations
+std::vector<double> form_weights(const Eigen::VectorXd& effect,
+                                 const std::vector<FormCoordinate>& coordinates);
+
+/// Covariance of the error of an effect's form, a share `form` of what it does.
+Eigen::MatrixXd form_covariance(const Eigen::VectorXd& effect, const std::vector<FormCoordinate>& coordinates,
+                                double form);
+
 /// Once more with the covariance of the error that the forms of the effects have at a fit: what the evidence
 /// of different names is compared by. Its numbers are not those to predict with: they lean on the error.
 MapFit with_form_error(const ForwardModel& model, const Observations& observations, const MapFit& fit,

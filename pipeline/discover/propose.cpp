@@ -112,7 +112,8 @@ std::vector<double> hersey_of(const CouponQuestion& question, const CouponFindin
 
 /// Covariances that rivals share, of the training cells and then the candidates.
 struct Shared {
-  Eigen::MatrixXd covariance, likeness;
+  Eigen::MatrixXd covariance;
+  std::vector<FormCoordinate> coordinates;
   Eigen::MatrixXd noise;  ///< of the candidates alone
   Eigen::Index measured = 0;
 };
@@ -124,10 +125,10 @@ Shared shared_of(const CouponQuestion& question, const CouponFindings& findings,
   CouponNoise noise_alone = findings.noise;
   noise_alone.form = noise_alone.history = 0.0;
   Shared shared{.covariance = covariance_of(findings.noise, all, hersey_of(question, findings, all)),
-                .likeness = {},
+                .coordinates = {},
                 .noise = covariance_of(noise_alone, cells, {}),
                 .measured = findings.result.baseline.residual.size()};
-  shared.likeness = likeness_of(all, question.noise.effect_form_length, shared.measured);
+  shared.coordinates = form_coordinates(all, question.noise.effect_form_length, shared.measured);
   return shared;
 }
 
@@ -142,8 +143,7 @@ Outlook outlook_of(const CouponQuestion& question, const Shared& shared, const M
   for (std::size_t k = 0; k < here_shares.size(); ++k) {
     Eigen::VectorXd share(size);
     share << here_shares[k], there_shares[k];
-    share *= question.noise.effect_form;
-    covariance += share.asDiagonal() * shared.likeness * share.asDiagonal();
+    covariance += form_covariance(share, shared.coordinates, question.noise.effect_form);
   }
   const Whitened data(Eigen::VectorXd::Zero(n), covariance.topLeftCorner(n, n));
   const Eigen::VectorXd residual = data(fit.data->unwhitened(fit.residual));

@@ -27,9 +27,8 @@ class MadeWorld {
     }
     days_ = days;
     plan_ = discover::planned_campaign(question_, all, stretches, days);
-    modes_ = question_.noise.effect_form *
-             discover::smooth_modes(discover::likeness_of(plan_.cells, question_.noise.effect_form_length,
-                                                          std::ssize(cells) * stretches));
+    for (const discover::FormCoordinate& c : plan_.observations.coordinates)
+      modes_.push_back(question_.noise.effect_form * discover::smooth_modes(c.likeness));
   }
 
   const discover::ForwardModel& forward() const { return plan_.forward; }
@@ -43,8 +42,11 @@ class MadeWorld {
     const Eigen::VectorXd none = plan_.forward.predict(discover::trial_at(plan_.forward, {}, z.head(base)));
     const Eigen::VectorXd with = plan_.forward.predict(discover::trial_at(plan_.forward, {effect}, z));
     const Eigen::VectorXd share = with - none;
-    force_ = with + plan_.baseline.data->unwhitened(random.normals(with.size())) +
-             share.cwiseProduct(modes_ * random.normals(modes_.cols()));
+    force_ = with + plan_.baseline.data->unwhitened(random.normals(with.size()));
+    // Errors of form over what the effect depends on, as discovery allows for them.
+    const std::vector<double> weights = discover::form_weights(share, plan_.observations.coordinates);
+    for (std::size_t k = 0; k < modes_.size(); ++k)
+      force_ += std::sqrt(weights[k]) * share.cwiseProduct(modes_[k] * random.normals(modes_[k].cols()));
   }
 
   /// The campaign, and some of the candidates.
@@ -84,7 +86,7 @@ class MadeWorld {
   std::size_t measured_, days_ = 1;
   int stretches_;
   discover::PlannedCampaign plan_;
-  Eigen::MatrixXd modes_;
+  std::vector<Eigen::MatrixXd> modes_;  ///< of the error of form over each coordinate
   Eigen::VectorXd force_;
 };
 
