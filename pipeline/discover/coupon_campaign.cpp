@@ -180,7 +180,8 @@ const std::vector<Factor>& factors() {
          return s * s;
        }},
       {"dwell", "s", [](const CouponCell& cell) { return std::log1p(cell.dwell); }},
-      {"day", "", [](const CouponCell& cell) { return static_cast<double>(cell.day); }}};
+      {"day", "", [](const CouponCell& cell) { return static_cast<double>(cell.day); }},
+      {"warp_or_weft", "deg", [](const CouponCell& cell) { return std::cos(2.0 * cell.pull.orientation); }}};
   return all;
 }
 

@@ -50,7 +50,7 @@ std::string level_text(const Factor& factor, const CouponCell& cell) {
   if (name == "fabric_temperature") return in(cell.pull.fabric_temperature - 273.15);
   if (name == "normal_force") return in(std::round(cell.pull.normal_force));
   if (name == "velocity") return in(1e3 * cell.pull.velocity);
-  if (name == "orientation") return in(cell.pull.orientation * 57.29577951308232);
+  if (name == "orientation" || name == "warp_or_weft") return in(cell.pull.orientation * 57.29577951308232);
   if (name == "dwell") return in(cell.dwell);
   return fmt::format("{} {}", name, cell.day + 1);
 }

@@ -368,7 +368,8 @@ std::vector<CouponCell> candidate_grid(const CouponCampaign& campaign) {
   };
   const auto same_factors = [&](const CouponCell& a, const CouponCell& b) {
     return std::ranges::all_of(factors(), [&](const Factor& factor) {
-      return std::string(factor.name) == "day" || level(factor, a) == level(factor, b);
+      const std::string name = factor.name;
+      return name == "day" || name == "warp_or_weft" || level(factor, a) == level(factor, b);
     });
   };
   std::vector<CouponCell> grid{campaign.cells.front()};

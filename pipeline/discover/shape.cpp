@@ -136,7 +136,7 @@ std::vector<ShapePoint> curve_of(const Shape& shape, const std::vector<CouponCel
       if (over == "fabric_temperature") at = cell.pull.fabric_temperature - 273.15;
       if (over == "normal_force") at = cell.pull.normal_force;
       if (over == "velocity") at = 1e3 * cell.pull.velocity;
-      if (over == "orientation") at = cell.pull.orientation * 180.0 / std::numbers::pi;
+      if (over == "orientation" || over == "warp_or_weft") at = cell.pull.orientation * 180.0 / std::numbers::pi;
       if (over == "dwell") at = cell.dwell;
       Sum& sum = levels[std::lround(50.0 * std::log(std::max(at, 1e-3)))];
       sum.at += at;
