@@ -6,7 +6,6 @@
 
 #include "core/text_file.h"
 #include "core/units.h"
-#include "friction/calibrate.h"
 #include "friction/calibration/model_numbers.h"
 #include "friction/parameters.h"
 #include "pipeline/run_folder.h"
@@ -17,15 +16,6 @@ namespace heddle::pipeline {
 namespace {
 
 const std::string shift_slope = "effects.tool_temperature_shift.slope";
-
-/// The numbers of the case; where a table would fit them in a run, as it does.
-friction::Model start_of(const FrictionSpec& spec, const friction::AreaFunction& area) {
-  if (!spec.calibrated()) return spec.model;
-  const auto rows = friction::read_friction_table(spec.calibration_data.string());
-  return friction::calibrate(spec.model, rows, spec.rig, area,
-                             {.hold_tool_temperature_slope = !spec.fit_temperature_slope, .search = {}})
-      .model;
-}
 
 /// What a run would fit.
 std::vector<std::string> usual_numbers(const friction::Model& model) {
@@ -108,7 +98,7 @@ CalibrationFindings calibrate(const Case& a_case, const std::filesystem::path& d
   const FrictionSpec& spec = *a_case.friction;
   const CalibrateSpec wish = a_case.calibrate.value_or(CalibrateSpec{});
   const friction::AreaFunction area = area_of_pulled_fabric(a_case);
-  const friction::Model start = start_of(spec, area);
+  const friction::Model start = model_of_run(spec, area);
   CalibrationFindings findings;
   findings.name = a_case.name;
   findings.data_file = data.filename().string();

@@ -8,7 +8,6 @@
 
 #include "core/text_file.h"
 #include "core/units.h"
-#include "friction/calibrate.h"
 #include "friction/calibration/model_numbers.h"
 #include "friction/parameters.h"
 #include "pipeline/config_tree.h"
@@ -23,15 +22,6 @@ namespace heddle::pipeline {
 namespace {
 
 namespace fs = std::filesystem;
-
-/// The numbers of the case; where a table would fit them in a run, as it does.
-friction::Model start_of(const FrictionSpec& spec, const friction::AreaFunction& area) {
-  if (!spec.calibrated()) return spec.model;
-  const auto rows = friction::read_friction_table(spec.calibration_data.string());
-  return friction::calibrate(spec.model, rows, spec.rig, area,
-                             {.hold_tool_temperature_slope = !spec.fit_temperature_slope, .search = {}})
-      .model;
-}
 
 /// The law's constants, and of its film what rheology knows only so well.
 std::vector<std::string> usual_numbers(const friction::Model& model) {
@@ -208,7 +198,7 @@ discover::CouponQuestion question_of(const Case& a_case, const discover::CouponR
                                      const std::vector<fs::path>& own_effects, Problems& problems) {
   const DiscoverSpec spec = a_case.discover.value_or(DiscoverSpec{});
   discover::CouponQuestion question;
-  question.base = start_of(*a_case.friction, rig.area);
+  question.base = model_of_run(*a_case.friction, rig.area);
   question.rig = rig;
   question.baseline = baseline_of(question.base, spec, problems);
   question.effects = library_of(spec, own_effects, problems);

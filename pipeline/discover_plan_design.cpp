@@ -55,7 +55,6 @@ class RowReader {
       add("discover.design.empty"_rule, "rows", "", "must hold a condition", "Write one row a condition.", 0);
     PlannedDesign design;
     for (const CsvRow& row : table_.rows) design.cells.push_back(cell_of(row));
-    design.varies_dwell = has("dwell_s");
     if (!problems_.empty()) throw InputError(std::move(problems_));
     return design;
   }

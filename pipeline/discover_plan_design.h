@@ -12,7 +12,6 @@ namespace heddle::pipeline {
 /// A campaign that somebody means to pull.
 struct PlannedDesign {
   std::vector<discover::CouponCell> cells;  ///< without points
-  bool varies_dwell = false;                ///< its table has a column for the rest before the pull
   std::vector<std::string> notes;           ///< what was assumed
 };
 

@@ -153,6 +153,14 @@ friction::AreaFunction area_of_pulled_fabric(const Case& a_case) {
   return area_function(spec, &pulled);
 }
 
+friction::Model model_of_run(const FrictionSpec& spec, const friction::AreaFunction& area) {
+  if (!spec.calibrated()) return spec.model;
+  const auto rows = friction::read_friction_table(spec.calibration_data.string());
+  return friction::calibrate(spec.model, rows, spec.rig, area,
+                             {.hold_tool_temperature_slope = !spec.fit_temperature_slope, .search = {}})
+      .model;
+}
+
 FrictionStage run_friction_stage(const Case& a_case, const mesoscale::FabricProperties* fabric) {
   const FrictionSpec& spec = *a_case.friction;
   if (spec.contact_pressure == macroscale::ContactPressure::real && !fabric)

@@ -31,6 +31,11 @@ friction::AreaFunction area_function(const FrictionSpec& spec, const mesoscale::
 /// The same of the fabric that the calibration pulls were made of, with a cell of its own analysed for it.
 friction::AreaFunction area_of_pulled_fabric(const Case& a_case);
 
+/// The friction model of a case, as a run has it: the numbers given, or fitted to the table that is.
+/// @param area  of the fabric that was pulled
+/// @throws InputError  naming the table and line
+friction::Model model_of_run(const FrictionSpec& spec, const friction::AreaFunction& area);
+
 /// Calibrates where the case asks for it, then runs the friction test.
 /// @param fabric  needed where the contact pressure is real
 /// @throws InputError  naming the data file and line, or the missing weave
