@@ -268,7 +268,7 @@ StampingDiscovery discover_stamping_in(const Case& a_case, StampingRuns& runs, c
   observations.covariance = covariance_of(found.noise, found.training, {}) +
                             grid_covariance(discovery.grid_error, strokes, strokes, data.edges.back());
   observations.form = spec.noise.effect_form;
-  observations.likeness = discover::likeness_of(found.training, spec.noise.effect_form_length);
+  observations.coordinates = discover::form_coordinates(found.training, spec.noise.effect_form_length);
   judge(found, observations, record.question);
   add_and_validate(discovery, runs, library, data, dear, surrogate);
   note_slopes(discovery);

@@ -67,18 +67,4 @@ std::vector<FormCoordinate> form_coordinates(const std::vector<CouponCell>& cell
   return coordinates;
 }
 
-Eigen::MatrixXd likeness_of(const std::vector<CouponCell>& cells, double length, Eigen::Index centred_over) {
-  Eigen::Index size = 0;
-  for (const CouponCell& cell : cells) size += std::ssize(cell.points);
-  Eigen::MatrixXd likeness = Eigen::MatrixXd::Zero(size, size);
-  for (const Coordinate& c : coordinates_of(cells))
-    for (Eigen::Index j = 0; j < size; ++j)
-      likeness.col(j).array() += ((c.at.array() - c.at[j]).square() * (-0.5 / (length * length))).exp();
-  // What is the same everywhere is the amplitude's own.
-  const Eigen::Index over = centred_over > 0 ? centred_over : size;
-  likeness.rowwise() -= likeness.topRows(over).colwise().mean().eval();
-  likeness.colwise() -= likeness.leftCols(over).rowwise().mean().eval();
-  return likeness;
-}
-
 }  // namespace heddle::discover

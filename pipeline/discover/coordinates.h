@@ -32,9 +32,4 @@ double gaussian(double distance, double length);
 std::vector<FormCoordinate> form_coordinates(const std::vector<CouponCell>& cells, double length,
                                              Eigen::Index centred_over = 0);
 
-/// The sum over all coordinates, for plans and proposals, which do not ask what an effect depends on.
-/// @param centred_over  the first so many observations, whose mean it is; 0: all
-Eigen::MatrixXd likeness_of(const std::vector<CouponCell>& cells, double length,
-                            Eigen::Index centred_over = 0);
-
 }  // namespace heddle::discover

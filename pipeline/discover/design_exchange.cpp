@@ -48,7 +48,7 @@ class Judge {
     const Changes changes = stacked(blocks);
     const Observations observations{.value = Eigen::VectorXd::Zero(changes.baseline.rows()),
                                     .covariance = covariance_of(noise, cells, hersey),
-                                    .likeness = likeness_of(cells, question_.noise.effect_form_length),
+                                    .coordinates = form_coordinates(cells, question_.noise.effect_form_length),
                                     .form = question_.noise.effect_form};
     const Whitened data(observations.value, observations.covariance);
     return criterion_of(fingerprints_of(changes, data, observations));

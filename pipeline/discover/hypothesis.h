@@ -66,7 +66,6 @@ struct Observations {
   /// Nature's form of an effect is not the library's: what it does to ln F may be off by a share `form` of
   /// itself over each coordinate that it depends on, smoothly. Empty: forms are taken as exact.
   std::vector<FormCoordinate> coordinates = {};
-  Eigen::MatrixXd likeness = {};  ///< sum over all coordinates, where an effect's dependence is not asked for
   double form = 0.25;
 };
 

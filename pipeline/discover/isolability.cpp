@@ -189,12 +189,20 @@ Changes changes_of(const ForwardModel& model, const MapFit& baseline) {
 std::vector<Fingerprint> fingerprints_of(const Changes& changes, const Whitened& data,
                                          const Observations& observations) {
   const BesideBaseline beside(data(changes.baseline));
-  const Eigen::MatrixXd modes = observations.form * smooth_modes(observations.likeness);
+  std::vector<Eigen::MatrixXd> modes;
+  for (const FormCoordinate& c : observations.coordinates)
+    modes.push_back(observations.form * smooth_modes(c.likeness));
   std::vector<Fingerprint> prints;
   for (const Changes::OfEffect& of : changes.effects) {
     if (!of.own.allFinite() || !of.slopes.allFinite()) continue;
-    Eigen::MatrixXd freedoms(of.own.size(), 1 + of.slopes.cols() + modes.cols());
-    freedoms << of.own, of.slopes, of.own.asDiagonal() * modes;
+    Eigen::MatrixXd freedoms(of.own.size(), 1 + of.slopes.cols());
+    freedoms << of.own, of.slopes;
+    const std::vector<double> weights = form_weights(of.own, observations.coordinates);
+    for (std::size_t k = 0; k < weights.size(); ++k) {
+      if (weights[k] == 0.0) continue;
+      freedoms.conservativeResize(Eigen::NoChange, freedoms.cols() + modes[k].cols());
+      freedoms.rightCols(modes[k].cols()) = std::sqrt(weights[k]) * (of.own.asDiagonal() * modes[k]);
+    }
     Fingerprint print{.effect = of.effect, .own = {}, .freedoms = beside(data(freedoms))};
     print.own = print.freedoms.col(0);
     prints.push_back(std::move(print));

@@ -53,7 +53,6 @@ PlannedCampaign planned_campaign(const CouponQuestion& question, std::vector<Cou
   campaign.observations.covariance = covariance_of(
       campaign.noise, campaign.cells, hersey_numbers(question.base, question.rig, campaign.cells));
   campaign.observations.form = question.noise.effect_form;
-  campaign.observations.likeness = likeness_of(campaign.cells, question.noise.effect_form_length);
   campaign.observations.coordinates = form_coordinates(campaign.cells, question.noise.effect_form_length);
   campaign.baseline = planned_baseline(campaign.forward, campaign.observations.covariance);
   campaign.observations.value = campaign.baseline.data->value();

@@ -154,7 +154,7 @@ CouponFindings found_in(const Trial& truth, std::uint64_t seed) {
   observations.value =
       of_points(found.training, [](const CouponCell&, const CouponPoint& point) { return point.log_force; });
   observations.covariance = covariance_of(found.noise, found.training, {});
-  observations.likeness = likeness_of(found.training, question.noise.effect_form_length);
+  observations.coordinates = form_coordinates(found.training, question.noise.effect_form_length);
   judge(found, observations, question);
   return found;
 }

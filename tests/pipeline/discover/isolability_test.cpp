@@ -113,10 +113,12 @@ TEST_CASE("an error of form brings a look-alike nearer, and smooth modes hold al
           "[discover][isolability]") {
   const std::vector<CouponCell> cells = test::crossed_cells();
   const PlannedCampaign plan = planned_campaign(test::shipped_question(), cells, 2);
-  const Eigen::MatrixXd& likeness = plan.observations.likeness;
-  const Eigen::MatrixXd modes = smooth_modes(likeness, 1e-6);
-  CHECK((modes * modes.transpose() - likeness).cwiseAbs().maxCoeff() < 1e-5 * likeness.maxCoeff());
-  CHECK(smooth_modes(likeness).cols() < likeness.cols());
+  REQUIRE_FALSE(plan.observations.coordinates.empty());
+  for (const FormCoordinate& c : plan.observations.coordinates) {
+    const Eigen::MatrixXd modes = smooth_modes(c.likeness, 1e-6);
+    CHECK((modes * modes.transpose() - c.likeness).cwiseAbs().maxCoeff() < 1e-5 * c.likeness.maxCoeff());
+    CHECK(smooth_modes(c.likeness).cols() < c.likeness.cols());
+  }
 
   const Changes changes = changes_of(plan.forward, plan.baseline);
   Observations exact = plan.observations;
@@ -124,7 +126,11 @@ TEST_CASE("an error of form brings a look-alike nearer, and smooth modes hold al
   const Eigen::MatrixXd with = separations(fingerprints_of(changes, *plan.baseline.data, plan.observations)),
                         without = separations(fingerprints_of(changes, *plan.baseline.data, exact));
   CHECK((without - with).minCoeff() > -1e-9 * without.maxCoeff());
-  CHECK(with.sum() < 0.9 * without.sum());
+  // What its own form can be off by brings a rival nearer to some truth, by a tenth or more.
+  Eigen::Index brought_nearer = 0;
+  for (Eigen::Index rival = 0; rival < with.cols(); ++rival)
+    brought_nearer += (with.col(rival).array() < 0.9 * without.col(rival).array()).any() ? 1 : 0;
+  CHECK(brought_nearer >= 8);
 }
 
 TEST_CASE(
