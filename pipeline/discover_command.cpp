@@ -317,7 +317,7 @@ Settings discovered_settings(const Case& a_case, const DiscoveryRecord& record) 
   const bool named = found.decision.answer == discover::Answer::named ||
                      found.decision.answer == discover::Answer::named_incomplete;
   const discover::Scored* scored = named ? found.result.find(found.decision.named) : nullptr;
-  const discover::MapFit& fit = scored != nullptr ? scored->exact : found.result.baseline;
+  const discover::MapFit& fit = scored != nullptr ? scored->numbers : found.result.baseline;
   const friction::Model patched = discover::patched_model(record.base, found.forward, fit.trial);
   // An effect of the user's own may move a number that every model has.
   const auto of_named = [&](const std::string& key) {

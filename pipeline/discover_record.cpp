@@ -63,7 +63,7 @@ ordered_json effects_json(const CouponFindings& found) {
   if (found.decision.answer != Answer::named && found.decision.answer != Answer::named_incomplete)
     return effects;
   const Scored* best = found.result.find(found.decision.named);
-  const FittedNumbers numbers = numbers_of(found.forward, best->exact);
+  const FittedNumbers numbers = numbers_of(found.forward, best->numbers);
   for (std::size_t k = 0; k < found.decision.named.size(); ++k) {
     const discover::Candidate& candidate = found.forward.candidates[found.decision.named[k]];
     effects.push_back({{"id", candidate.id},

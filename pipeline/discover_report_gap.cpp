@@ -144,7 +144,7 @@ GapTable gap_table(const CouponFindings& findings) {
 }
 
 Eigen::VectorXd added_by(const GapTable& table, const discover::Scored& scored) {
-  return table.findings->forward.predict(scored.exact.trial) - table.baseline;
+  return table.findings->forward.predict(scored.numbers.trial) - table.baseline;
 }
 
 std::string Levels::words(std::size_t level) const {

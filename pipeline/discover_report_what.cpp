@@ -77,7 +77,7 @@ std::string number_table(const DiscoveryPage& page) {
   const Scored* best = page.best();
   if (best == nullptr || page.found.decision.answer == Answer::no_gap) return "";
   std::vector<std::vector<std::string>> rows;
-  for (const NumberRow& row : numbers_of(page, best->exact))
+  for (const NumberRow& row : numbers_of(page, best->numbers))
     rows.push_back({row.key, row.value, row.interval, row.prior});
   if (rows.empty()) return "";
   std::string forms;

@@ -158,11 +158,8 @@ void add_and_validate(StampingDiscovery& discovery, StampingRuns& runs, const St
       has_name ? found.result.find(found.decision.named) : best_with_effects(found);
   MapFit after = baseline;
   if (best != nullptr) {
-    after = settled(dear, surrogate, best->exact, discovery.true_checks);
-    if (has_name)
-      std::ranges::find_if(found.result.scored, [&](const discover::Scored& one) {
-        return one.fit.hypothesis == found.decision.named;
-      })->exact = after;
+    after = settled(dear, surrogate, best->numbers, discovery.true_checks);
+    if (has_name) found.result.find(found.decision.named)->numbers = after;
   }
   const bool named = found.decision.answer == discover::Answer::named ||
                      found.decision.answer == discover::Answer::named_incomplete;

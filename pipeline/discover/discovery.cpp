@@ -7,6 +7,7 @@
 
 #include "core/problem.h"
 #include "pipeline/discover/coordinates.h"
+#include "pipeline/discover/foresight.h"
 #include "pipeline/discover/stability.h"
 
 namespace heddle::discover {
@@ -14,7 +15,7 @@ namespace heddle::discover {
 namespace {
 
 /// Different seeds for different draws, from the one of the case.
-enum class Draw : std::uint64_t { split = 1, noise, stability, bootstrap, isolability, outcomes };
+enum class Draw : std::uint64_t { split = 1, noise, stability, bootstrap, isolability, outcomes, folds };
 std::uint64_t seed_of(std::uint64_t seed, Draw draw) {
   return seed * 1000003u + static_cast<std::uint64_t>(draw);
 }
@@ -88,37 +89,40 @@ Eigen::VectorXd predict_elsewhere(const CouponQuestion& question, const CouponFi
   return elsewhere.predict(trial);
 }
 
-/// What the training pulls of each day say of the day's shift of ln F under a fit: its mean given their
-/// residuals, and its variance. A held-out cell shares the shift of its day.
+/// What the training pulls of each day say of the day's shift of ln F where a trial holds: its mean given
+/// their residuals, and its variance. A held-out cell shares the shift of its day.
+/// @param data  with the covariance of their residuals
 struct DayShifts {
   std::vector<double> mean, variance;
 };
 
-DayShifts shifts_of(const CouponFindings& findings, const MapFit& fit) {
+DayShifts shifts_of(const CouponFindings& findings, const Trial& trial, const Whitened& data) {
   const std::size_t days = findings.campaign.days.size();
-  const auto size = fit.residual.size();
-  Eigen::MatrixXd share = Eigen::MatrixXd::Zero(size, static_cast<Eigen::Index>(days));
+  const Eigen::VectorXd residual = data.residual(findings.forward.predict(trial));
+  Eigen::MatrixXd share = Eigen::MatrixXd::Zero(residual.size(), static_cast<Eigen::Index>(days));
   Eigen::Index row = 0;
   for (const CouponCell& cell : findings.training)
     for (std::size_t k = 0; k < cell.points.size(); ++k)
       share(row++, static_cast<Eigen::Index>(cell.day)) = 1.0;
   const double square = findings.noise.day * findings.noise.day;
-  const Eigen::MatrixXd whitened = (*fit.data)(share);
+  const Eigen::MatrixXd whitened = data(share);
   DayShifts shifts;
   for (Eigen::Index day = 0; day < share.cols(); ++day) {
-    shifts.mean.push_back(-square * whitened.col(day).dot(fit.residual));  // measured less model
+    shifts.mean.push_back(-square * whitened.col(day).dot(residual));  // measured less model
     shifts.variance.push_back(square - square * square * whitened.col(day).squaredNorm());
   }
   return shifts;
 }
 
 std::vector<HeldOut> validate(const CouponQuestion& question, const CouponFindings& findings,
-                              const MapFit& after, std::size_t library_size) {
+                              const Scored& named, std::size_t library_size) {
   const std::vector<CouponCell> cells = pick(findings.campaign.cells, findings.split.held_out);
   const MapFit& before = findings.result.baseline;
+  const Trial& after = named.numbers.trial;
   const Eigen::VectorXd base = predict_elsewhere(question, findings, cells, before.trial, library_size);
-  const Eigen::VectorXd with = predict_elsewhere(question, findings, cells, after.trial, library_size);
-  const DayShifts days_before = shifts_of(findings, before), days_after = shifts_of(findings, after);
+  const Eigen::VectorXd with = predict_elsewhere(question, findings, cells, after, library_size);
+  const DayShifts days_before = shifts_of(findings, before.trial, *before.data),
+                  days_after = shifts_of(findings, after, *named.fit.data);
   std::vector<HeldOut> held_out;
   Eigen::Index row = 0;
   for (std::size_t c = 0; c < cells.size(); ++c) {
@@ -168,7 +172,7 @@ void pass_gate(CouponFindings& findings) {
 
 friction::Model CouponFindings::patched(const friction::Model& base) const {
   const Scored* named = decision.named.empty() ? nullptr : result.find(decision.named);
-  const MapFit& fit = named != nullptr ? named->exact : result.baseline;
+  const MapFit& fit = named != nullptr ? named->numbers : result.baseline;
   return patched_model(base, forward, fit.trial);
 }
 
@@ -207,6 +211,10 @@ void judge(CouponFindings& findings, const Observations& observations, const Cou
         stability_of(findings.result, findings.training, seed_of(question.seed, Draw::stability));
   }
   findings.decision = decide(findings.forward, findings.result, findings.evidence, question.verdict);
+  if (Scored* named = findings.result.find(findings.decision.named);
+      named != nullptr && !findings.decision.named.empty())
+    named->numbers = best_in_foresight(findings.forward, observations, findings.training, named->numbers,
+                                       seed_of(question.seed, Draw::folds));
 }
 
 CouponFindings discover_in_coupons(const CouponQuestion& question, const friction::CouponData& data) {
@@ -255,7 +263,7 @@ CouponFindings discover_in_coupons(const CouponQuestion& question, const frictio
   findings.saturated = findings.training.size() <= numbers;
   if (!findings.split.held_out.empty() && !findings.decision.named.empty()) {
     findings.held_out =
-        validate(question, findings, findings.result.find(findings.decision.named)->exact, library_size);
+        validate(question, findings, *findings.result.find(findings.decision.named), library_size);
     findings.gap = gap_of(findings.held_out, seed_of(question.seed, Draw::bootstrap));
   }
   return findings;

@@ -257,7 +257,7 @@ double share_between(const Eigen::VectorXd& effect, const std::vector<int>& leve
 
 std::vector<double> form_weights(const Eigen::VectorXd& effect,
                                  const std::vector<FormCoordinate>& coordinates) {
-  constexpr double none = 0.1;
+  constexpr double none = 0.03;
   std::vector<double> weights;
   for (const FormCoordinate& c : coordinates) weights.push_back(share_between(effect, c.level));
   const double strongest = weights.empty() ? 0.0 : *std::ranges::max_element(weights);
@@ -270,27 +270,79 @@ Eigen::MatrixXd form_covariance(const Eigen::VectorXd& effect, const std::vector
                                 double form) {
   const std::vector<double> weights = form_weights(effect, coordinates);
   Eigen::MatrixXd likeness = Eigen::MatrixXd::Zero(effect.size(), effect.size());
-  for (std::size_t k = 0; k < weights.size(); ++k)
-    if (weights[k] > 0.0) likeness += weights[k] * coordinates[k].likeness;
+  for (std::size_t k = 0; k < weights.size(); ++k) {
+    if (weights[k] == 0.0) continue;
+    likeness += weights[k] * coordinates[k].likeness;
+    for (std::size_t m = 0; m < k; ++m)
+      if (weights[m] > 0.0)
+        likeness += weights[k] * weights[m] * coordinates[k].likeness.cwiseProduct(coordinates[m].likeness);
+  }
   const Eigen::VectorXd size = form * effect;
   return size.asDiagonal() * likeness * size.asDiagonal();
 }
 
-MapFit with_form_error(const ForwardModel& model, const Observations& observations, const MapFit& fit,
-                       const FitOptions& options) {
-  if (observations.coordinates.empty() || observations.form == 0.0 || !std::isfinite(fit.log_evidence))
-    return fit;
-  Eigen::MatrixXd covariance = observations.covariance;
-  const Eigen::VectorXd whole = model.predict(fit.trial);
-  for (std::size_t k = 0; k < fit.trial.effects.size(); ++k) {
-    Trial without = fit.trial;
+Eigen::MatrixXd form_covariance_of(const ForwardModel& model, const Observations& observations,
+                                   const Trial& trial) {
+  Eigen::MatrixXd covariance =
+      Eigen::MatrixXd::Zero(observations.covariance.rows(), observations.covariance.cols());
+  const Eigen::VectorXd whole = model.predict(trial);
+  for (std::size_t k = 0; k < trial.effects.size(); ++k) {
+    Trial without = trial;
     without.effects.erase(without.effects.begin() + static_cast<std::ptrdiff_t>(k));
     const Eigen::VectorXd effect = whole - model.predict(without);
     if (effect.allFinite())
       covariance += form_covariance(effect, observations.coordinates, observations.form);
   }
-  return map_fit(model, std::make_shared<const Whitened>(observations.value, covariance), fit.hypothesis,
-                 fit.z, options);
+  return covariance;
+}
+
+namespace {
+
+/// A fit moved to where it would be with other weights, its slopes held.
+MapFit reweighed(const ForwardModel& model, const MapFit& fit, std::shared_ptr<const Whitened> data) {
+  const std::vector<const Unknown*> numbers = free_numbers(model, fit.hypothesis);
+  const Room room = room_of(numbers);
+  MapFit moved = fit;
+  moved.data = std::move(data);
+  moved.residual = (*moved.data)(fit.data->unwhitened(fit.residual));
+  moved.jacobian = (*moved.data)(fit.data->unwhitened(fit.jacobian));
+  const Eigen::MatrixXd curvature =
+      moved.jacobian.transpose() * moved.jacobian + Eigen::MatrixXd::Identity(fit.z.size(), fit.z.size());
+  const Eigen::VectorXd gradient = moved.jacobian.transpose() * moved.residual + fit.z;
+  const Eigen::VectorXd step = bounded_step(curvature, gradient, fit.z, room);
+  moved.z += step;
+  moved.residual += moved.jacobian * step;
+  moved.chi2 = moved.residual.squaredNorm();
+  moved.trial = trial_at(model, fit.hypothesis, moved.z);
+  add_evidence(moved, numbers, room);
+  return moved;
+}
+
+}  // namespace
+
+MapFit with_form_error(const ForwardModel& model, const Observations& observations, const MapFit& fit,
+                       const FitOptions& options) {
+  if (observations.coordinates.empty() || observations.form == 0.0 || !std::isfinite(fit.log_evidence))
+    return fit;
+  const Eigen::MatrixXd form = form_covariance_of(model, observations, fit.trial);
+  std::vector<std::shared_ptr<const Whitened>> weights;
+  for (const double share : form_shares)
+    weights.push_back(
+        std::make_shared<const Whitened>(observations.value, observations.covariance + share * share * form));
+  MapFit best;
+  for (const auto& data : weights) {
+    MapFit moved = reweighed(model, fit, data);
+    if (best.data == nullptr || moved.log_evidence > best.log_evidence) best = std::move(moved);
+  }
+  best = map_fit(model, best.data, best.hypothesis, best.z, options);
+  if (!std::isfinite(best.log_evidence)) return best;
+  double sum = 0.0;
+  for (const auto& data : weights) {
+    const double evidence = data == best.data ? best.log_evidence : reweighed(model, best, data).log_evidence;
+    sum += std::exp(evidence - best.log_evidence);
+  }
+  best.log_evidence += std::log(sum / static_cast<double>(weights.size()));
+  return best;
 }
 
 }  // namespace heddle::discover

@@ -2,6 +2,7 @@
 
 #include <Eigen/Cholesky>
 #include <Eigen/Core>
+#include <array>
 #include <memory>
 #include <vector>
 
@@ -53,7 +54,7 @@ Trial trial_at(const ForwardModel& model, const Hypothesis& hypothesis, const Ei
 
 struct FitOptions {
   int iterations_max = 40;
-  double tolerance = 1e-4;  ///< of the expected gain in -ln posterior at which a search stops
+  double tolerance = 0.01;  ///< of the expected gain in -ln posterior at which a search stops
   double step = 1e-4;       ///< of z in a difference
 };
 
@@ -69,18 +70,26 @@ MapFit best_fit(const ForwardModel& model, const std::shared_ptr<const Whitened>
 
 /// How far the form of an effect may be off over each coordinate, as share of the variance allowed: 1 for the
 /// one it depends on most, 0 for those it hardly sees. An effect that does not see the tool temperature may
-/// not be wrong over it either. Designs are not balanced, so a tenth of the strongest dependence counts as
-/// none.
+/// not be wrong over it either. Designs are not balanced, so 3 % of the strongest dependence count as none.
 /// @param effect  what it does to the observations
 std::vector<double> form_weights(const Eigen::VectorXd& effect,
                                  const std::vector<FormCoordinate>& coordinates);
 
-/// Covariance of the error of an effect's form, a share `form` of what it does.
+/// Covariance of the error of an effect's form, a share `form` of what it does: over each coordinate, and
+/// over each pair of them together.
 Eigen::MatrixXd form_covariance(const Eigen::VectorXd& effect, const std::vector<FormCoordinate>& coordinates,
                                 double form);
 
-/// Once more with the covariance of the error that the forms of the effects have at a fit: what the evidence
-/// of different names is compared by. Its numbers are not those to predict with: they lean on the error.
+/// The same of all effects of a trial, each a share Observations::form of what it does.
+Eigen::MatrixXd form_covariance_of(const ForwardModel& model, const Observations& observations,
+                                   const Trial& trial);
+
+/// How far forms are off is not known either: these shares of Observations::form are as probable as each
+/// other. A name that fits needs none of it, a poor one pays for it.
+inline constexpr std::array form_shares{0.25, 0.5, 1.0, 2.0};
+
+/// Once more with the covariance of the error that the forms of the effects have at a fit, at the share of it
+/// that fits best; the evidence is the mean over all shares. What different names are compared by.
 MapFit with_form_error(const ForwardModel& model, const Observations& observations, const MapFit& fit,
                        const FitOptions& options = {});
 

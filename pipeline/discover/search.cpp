@@ -73,7 +73,7 @@ std::vector<Hypothesis> pairs_to_try(const std::vector<Scored>& singles,
                                      const ForwardModel& model, const SearchOptions& options) {
   std::set<Hypothesis> pairs;
   for (std::size_t k = 0; k < std::min(singles.size(), options.pairs_of); ++k) {
-    const MapFit& fit = singles[k].exact;
+    const MapFit& fit = singles[k].numbers;
     const std::size_t first = fit.hypothesis[0];
     const BesideBaseline beside(fit.jacobian);
     const Eigen::VectorXd gap = beside.gap_of(fit.residual);
@@ -100,6 +100,12 @@ std::vector<Hypothesis> pairs_to_try(const std::vector<Scored>& singles,
 }  // namespace
 
 const Scored* SearchResult::find(const Hypothesis& hypothesis) const {
+  const auto at =
+      std::ranges::find_if(scored, [&](const Scored& one) { return one.fit.hypothesis == hypothesis; });
+  return at == scored.end() ? nullptr : &*at;
+}
+
+Scored* SearchResult::find(const Hypothesis& hypothesis) {
   const auto at =
       std::ranges::find_if(scored, [&](const Scored& one) { return one.fit.hypothesis == hypothesis; });
   return at == scored.end() ? nullptr : &*at;
@@ -153,20 +159,20 @@ SearchResult search(const ForwardModel& model, const Observations& observations,
     signatures[effect] = signatures_of(model, *data, result.baseline, beside, result.gap, effect);
     MapFit exact = best_fit(model, data, {effect}, starts_of(model, result.baseline, signatures[effect]));
     singles[effect] = {.fit = with_form_error(model, observations, exact),
-                       .exact = std::move(exact),
+                       .numbers = std::move(exact),
                        .log_prior = prior.of({effect}),
                        .log_choice = prior.choice({effect})};
   });
   for (const std::vector<Signature>& of : signatures)
     if (const Signature* best = strongest(of)) result.signatures.push_back(*best);
   std::vector<MapFit> by_effect;
-  for (const Scored& single : singles) by_effect.push_back(single.exact);
+  for (const Scored& single : singles) by_effect.push_back(single.numbers);
   std::erase_if(singles, [](const Scored& one) { return !std::isfinite(one.fit.log_evidence); });
   std::ranges::stable_sort(singles, std::greater{},
                            [](const Scored& one) { return one.fit.log_evidence + one.log_prior; });
 
   result.scored = singles;
-  result.scored.push_back({.fit = result.baseline, .exact = result.baseline, .log_prior = prior.of({})});
+  result.scored.push_back({.fit = result.baseline, .numbers = result.baseline, .log_prior = prior.of({})});
   // A pair can only win where a single effect does better than none.
   if (result.best_gain() > options.bayes_factor) {
     std::vector<Hypothesis> pairs = pairs_to_try(singles, signatures, model, options);
@@ -179,7 +185,7 @@ SearchResult search(const ForwardModel& model, const Observations& observations,
       const MapFit &first = by_effect[pairs[k][0]], &second = by_effect[pairs[k][1]];
       MapFit exact = map_fit(model, data, pairs[k], joined(result.baseline, first, second));
       fitted[k] = {.fit = with_form_error(model, observations, exact),
-                   .exact = std::move(exact),
+                   .numbers = std::move(exact),
                    .log_prior = prior.of(pairs[k]),
                    .log_choice = prior.choice(pairs[k])};
     });

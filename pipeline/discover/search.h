@@ -25,8 +25,9 @@ struct SearchOptions {
 
 /// One hypothesis that was fitted, with its probability among all that were.
 struct Scored {
-  MapFit fit;    ///< with the error of form of its effects: for evidence and for what is left over
-  MapFit exact;  ///< forms taken as exact: the numbers to predict with
+  MapFit fit;  ///< with the error of form of its effects: for evidence and for what is left over
+  /// The numbers to predict with: forms taken as exact; of what is named, as foretells best (foresight.h).
+  MapFit numbers;
   double log_prior = 0.0;
   double log_choice = 0.0;  ///< part of log_prior: one of many choices under an id (Candidate::log_weight)
   double probability = 0.0;
@@ -42,6 +43,7 @@ struct SearchResult {
 
   const Scored& best() const { return scored.front(); }
   const Scored* find(const Hypothesis& hypothesis) const;
+  Scored* find(const Hypothesis& hypothesis);
   /// ln Bayes factor of the best hypothesis with effects against none; a choice pays for the choosing.
   double best_gain() const;
 };

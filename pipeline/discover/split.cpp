@@ -26,6 +26,10 @@ struct Condition {
   int away = 0;  ///< factors in which it differs from the most repeated one
 };
 
+const Condition& anchor_of(const std::vector<Condition>& conditions) {
+  return *std::ranges::max_element(conditions, {}, [](const Condition& c) { return c.cells.size(); });
+}
+
 std::vector<Condition> conditions_of(const CouponCampaign& campaign) {
   std::map<std::size_t, Condition> by_number;
   for (std::size_t c = 0; c < campaign.cells.size(); ++c) {
@@ -36,33 +40,55 @@ std::vector<Condition> conditions_of(const CouponCampaign& campaign) {
   }
   std::vector<Condition> conditions;
   for (auto& [number, condition] : by_number) conditions.push_back(std::move(condition));
-  const auto anchor =
-      std::ranges::max_element(conditions, {}, [](const Condition& c) { return c.cells.size(); });
+  const std::vector<long> usual = anchor_of(conditions).levels;
   for (Condition& condition : conditions)
     for (std::size_t f = 0; f < condition.levels.size(); ++f)
-      condition.away += condition.levels[f] != anchor->levels[f] ? 1 : 0;
+      condition.away += condition.levels[f] != usual[f] ? 1 : 0;
   return conditions;
 }
 
-/// Whether every level of every factor keeps a condition in training.
-bool leaves_every_level(const std::vector<Condition>& conditions, const std::set<std::size_t>& out,
-                        const Condition& candidate) {
+/// What stays in training has every level of every factor, or, where `between` is allowed, levels on either
+/// side of it.
+bool may_go(const std::vector<Condition>& conditions, const std::set<std::size_t>& out,
+            const Condition& candidate, bool between) {
   for (std::size_t f = 0; f < candidate.levels.size(); ++f) {
-    const bool kept = std::ranges::any_of(conditions, [&](const Condition& other) {
-      return other.number != candidate.number && !out.contains(other.number) &&
-             other.levels[f] == candidate.levels[f];
-    });
-    if (!kept) return false;
+    bool kept = false, below = false, above = false;
+    for (const Condition& other : conditions) {
+      if (other.number == candidate.number || out.contains(other.number)) continue;
+      kept = kept || other.levels[f] == candidate.levels[f];
+      below = below || other.levels[f] < candidate.levels[f];
+      above = above || other.levels[f] > candidate.levels[f];
+    }
+    if (!kept && !(between && below && above)) return false;
   }
   return true;
+}
+
+/// Holds one condition out for each factor in which all that are held out are like the anchor: a proof that
+/// never leaves a factor's usual level says nothing of effects over it.
+void reach_every_factor(const std::vector<Condition>& conditions, const Condition& anchor,
+                        const std::vector<std::size_t>& order, std::set<std::size_t>& out) {
+  for (std::size_t f = 0; f < anchor.levels.size(); ++f) {
+    const auto away = [&](const Condition& c) { return c.levels[f] != anchor.levels[f]; };
+    if (std::ranges::any_of(conditions,
+                            [&](const Condition& c) { return away(c) && out.contains(c.number); }))
+      continue;
+    for (const bool between : {false, true}) {
+      const auto found = std::ranges::find_if(order, [&](std::size_t k) {
+        return away(conditions[k]) && may_go(conditions, out, conditions[k], between);
+      });
+      if (found == order.end()) continue;
+      out.insert(conditions[*found].number);
+      break;
+    }
+  }
 }
 
 }  // namespace
 
 Split split_conditions(const CouponCampaign& campaign, double share, std::uint64_t seed) {
-  std::vector<Condition> conditions = conditions_of(campaign);
-  const std::size_t most =
-      std::ranges::max(conditions, {}, [](const Condition& c) { return c.cells.size(); }).cells.size();
+  const std::vector<Condition> conditions = conditions_of(campaign);
+  const Condition& anchor = anchor_of(conditions);
   std::set<std::size_t> out;
   if (conditions.size() >= 8 && share > 0.0) {
     const auto wanted = static_cast<std::size_t>(std::lround(share * static_cast<double>(conditions.size())));
@@ -78,12 +104,17 @@ Split split_conditions(const CouponCampaign& campaign, double share, std::uint64
       random.shuffle(rest);
       std::ranges::copy(rest, order.begin() + 2);
     }
-    for (const std::size_t k : order) {
-      if (out.size() == wanted) break;
-      const Condition& condition = conditions[k];
-      if (most > 1 && condition.cells.size() == most) continue;  // the anchors tell the scatter of days
-      if (leaves_every_level(conditions, out, condition)) out.insert(condition.number);
-    }
+    // The anchors tell the scatter of days.
+    if (anchor.cells.size() > 1)
+      std::erase_if(order, [&](std::size_t k) { return conditions[k].cells.size() == anchor.cells.size(); });
+    const auto hold_out = [&](std::size_t number) {
+      for (const std::size_t k : order)
+        if (out.size() < number && may_go(conditions, out, conditions[k], false))
+          out.insert(conditions[k].number);
+    };
+    hold_out(std::min<std::size_t>(wanted, 2));
+    if (wanted > 2) reach_every_factor(conditions, anchor, order, out);
+    hold_out(wanted);
   }
   Split split;
   for (std::size_t c = 0; c < campaign.cells.size(); ++c)

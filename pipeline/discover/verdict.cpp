@@ -119,10 +119,14 @@ Decision decide(const ForwardModel& model, const SearchResult& result, const Evi
 
   const double rest = top_evidence(evidence.rest_shapes);
   const bool something_left = decision.lack_of_fit_p < options.lack_of_fit || rest > options.bayes_factor;
-  // What a free shape says of the gap is the measure of what a name may miss.
+  // What a free shape says of the gap is the measure of what a name may miss; a shape is the best of many,
+  // and pays for it.
   const double captured = shape > options.bayes_factor ? gain / shape : 1.0;
+  const double price = std::log(static_cast<double>(std::max<std::size_t>(evidence.gap_shapes.size(), 1)));
+  const bool says_more = shape - gain > options.bayes_factor + price;
   if (gain <= options.bayes_factor ||
-      (something_left && (captured < options.captured || decision.excess_removed < options.excess))) {
+      (something_left && says_more &&
+       (captured < options.captured || decision.excess_removed < options.excess))) {
     decision.answer = Answer::unknown;
     decision.reasons.push_back(
         fmt::format("A smooth gap over {} (ln Bayes factor {:.1f}) says more than the best name, {} ({:.1f}, "

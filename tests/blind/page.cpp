@@ -82,7 +82,8 @@ std::string all_figures(const Scores& s) {
       {"of these, where law and melt are exactly the program's", cell(s.null_exact_named)},
       {"nothing hidden: a name, not a set", cell(s.null_name)},
       {"nothing hidden: any verdict but NO_GAP", cell(s.null_gap)},
-      {"two effects: exact set", cell(s.pair_exact)},
+      {"two effects: exact set (named, or the most probable set of a ONE_OF)", cell(s.pair_exact)},
+      {"two effects: named and exact", cell(s.pair_named)},
       {"two effects: at least one right", cell(s.pair_one)},
       {"two effects: a false name in the set", cell(s.pair_false)},
       {"outside the library: a clean name", cell(s.outside_clean)},
@@ -252,7 +253,7 @@ constexpr const char* preface =
     "names is "
     "exactly the truth, with or without a remainder (`*` = NAMED_INCOMPLETE). Top-1 also takes the first of "
     "a ONE_OF, "
-    "never of an UNKNOWN. For a null, a set of names is as bad as a name. A fault of the rig is called "
+    "and an exact set the most probable set of one, never of an UNKNOWN. For a null, a set of names is as bad as a name. A fault of the rig is called "
     "physics if a name "
     "is given that is friction's, or a set without any fault of the rig. Intervals are Wilson's at 95 %; "
     "rates pass by "

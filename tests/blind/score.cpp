@@ -38,6 +38,16 @@ bool names_exactly(const Judged& judged) {
   return judged.answer && judged.answer->gives_name() && named_ids(judged) == truth_ids(judged);
 }
 
+/// "a+b" as its two ids.
+std::vector<std::string> split_set(const std::string& name) {
+  std::vector<std::string> list;
+  std::size_t at = 0;
+  for (std::size_t plus; (plus = name.find('+', at)) != std::string::npos; at = plus + 1)
+    list.push_back(name.substr(at, plus - at));
+  list.push_back(name.substr(at));
+  return list;
+}
+
 /// The first of the ranking that is one effect and not a set; empty if there is none.
 std::string first_effect(const Answer& answer) {
   const auto found = std::ranges::find_if(
@@ -51,6 +61,19 @@ std::string first_name(const Judged& judged) {
   const Answer& answer = *judged.answer;
   if (answer.gives_name()) return answer.named.front().id;
   return answer.verdict == "ONE_OF" ? first_effect(answer) : "";
+}
+
+/// The most probable set of a ONE_OF.
+std::vector<std::string> head_of(const Judged& judged) {
+  if (!judged.answer || judged.answer->verdict != "ONE_OF" || judged.answer->ranking.empty()) return {};
+  std::vector<std::string> set = split_set(judged.answer->ranking.front().id);
+  std::ranges::sort(set);
+  return set;
+}
+
+/// It is the truth, effect for effect.
+bool heads_exactly(const Judged& judged) {
+  return head_of(judged) == truth_ids(judged);
 }
 
 bool is_top1(const Judged& judged) {
@@ -78,9 +101,10 @@ bool calls_it_physics(const Answer& answer) {
 
 bool finds_one(const Judged& judged) {
   const std::vector<std::string> truth = truth_ids(judged);
-  const std::vector<std::string> named = named_ids(judged);
-  return contains(truth, first_name(judged)) ||
-         std::ranges::any_of(named, [&](const std::string& id) { return contains(truth, id); });
+  const auto holds_one = [&](const std::vector<std::string>& list) {
+    return std::ranges::any_of(list, [&](const std::string& id) { return contains(truth, id); });
+  };
+  return contains(truth, first_name(judged)) || holds_one(named_ids(judged)) || holds_one(head_of(judged));
 }
 
 void count_single(Scores& s, const Judged& judged) {
@@ -114,7 +138,8 @@ void count_null(Scores& s, const Judged& judged) {
 
 void count_pair(Scores& s, const Judged& judged) {
   const std::vector<std::string> truth = truth_ids(judged);
-  s.pair_exact.count(names_exactly(judged));
+  s.pair_exact.count(names_exactly(judged) || heads_exactly(judged));
+  s.pair_named.count(names_exactly(judged));
   s.pair_one.count(finds_one(judged));
   s.pair_false.count(!judged.answer || std::ranges::any_of(named_ids(judged), [&](const std::string& id) {
     return !contains(truth, id);
@@ -201,7 +226,7 @@ bool went_well(const Judged& judged) {
     case Kind::null_exact:
       return !gives_any_name(*judged.answer);
     case Kind::pair:
-      return names_exactly(judged);
+      return names_exactly(judged) || heads_exactly(judged);
     case Kind::outside:
       return judged.answer->verdict != "NAMED";
     case Kind::rig:

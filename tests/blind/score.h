@@ -42,7 +42,9 @@ struct Scores {
   Rate null_name;                     ///< a name, not a set
   Rate null_gap;                      ///< any verdict but NO_GAP
   // two effects
-  Rate pair_exact, pair_one, pair_false;
+  Rate pair_exact;  ///< named, or the most probable set of a ONE_OF, as top1 of one effect
+  Rate pair_named;  ///< named
+  Rate pair_one, pair_false;
   // not in the library
   Rate outside_clean;    ///< NAMED
   Rate outside_unknown;  ///< UNKNOWN, or a name with a remainder

@@ -5,6 +5,7 @@
 #include <iostream>
 
 #include "amplitude_chart.h"
+#include "case_list.h"
 #include "history.h"
 #include "judge.h"
 #include "pipeline/outputs.h"
@@ -18,7 +19,7 @@ using namespace heddle;
 
 struct Options {
   std::vector<fs::path> folders;
-  fs::path page, record;
+  fs::path page, record, cases;
   std::string date;
   bool need_reports = false;
 };
@@ -59,6 +60,7 @@ int run(const Options& options) {
     std::cout << blind::summary(campaign);
     if (!options.record.empty()) append(options.record, blind::history_lines(campaign, options.date));
   }
+  if (!options.cases.empty()) pipeline::write_file(options.cases, blind::case_list(campaigns));
   if (!options.page.empty()) write_page(campaigns, options.page);
   const bool complete = std::ranges::all_of(
       campaigns, [](const blind::Scored& campaign) { return blind::score(campaign.cases).failed == 0; });
@@ -74,6 +76,7 @@ int main(int count, char** values) {
       ->required()
       ->check(CLI::ExistingDirectory);
   app.add_option("--page", options.page, "writes the whole page, for instance docs/blind.md");
+  app.add_option("--cases", options.cases, "writes truth and answer of every case as CSV");
   auto* record =
       app.add_option("--record", options.record, "appends a line a campaign, for instance to docs/blind.csv");
   auto* date = app.add_option("--date", options.date, "of the commit: git show -s --format=%cs");

@@ -286,7 +286,7 @@ TEST_CASE("an effect of the user's own that moves a number of the resin is in th
   REQUIRE(record.findings.forward.candidates.size() == 1);
   record.findings.decision.named = {0};
   record.findings.decision.answer = Answer::named;
-  const discover::Trial& trial = record.findings.result.find({0})->exact.trial;
+  const discover::Trial& trial = record.findings.result.find({0})->numbers.trial;
   const double fitted = trial.effects.at(0).second[0];
   CHECK(fitted != Approx(42e3).epsilon(1e-6));
   CHECK(discovered_settings(a_case, record).number("resin.activation_energy") == fitted);
