@@ -73,7 +73,7 @@ std::vector<Hypothesis> pairs_to_try(const std::vector<Scored>& singles,
                                      const ForwardModel& model, const SearchOptions& options) {
   std::set<Hypothesis> pairs;
   for (std::size_t k = 0; k < std::min(singles.size(), options.pairs_of); ++k) {
-    const MapFit& fit = singles[k].numbers;
+    const MapFit& fit = singles[k].fit;
     const std::size_t first = fit.hypothesis[0];
     const BesideBaseline beside(fit.jacobian);
     const Eigen::VectorXd gap = beside.gap_of(fit.residual);
