@@ -264,9 +264,12 @@ void write(Hdf5Writer& file, const std::string& group, const StampingCheckpoint&
   write_history(file, group + "/row", {checkpoint.row});
   write_history(file, group + "/history", checkpoint.history);
   file.write(group + "/peak_force_balance", checkpoint.peak_force_balance);
+  file.write(group + "/peak_pressure", checkpoint.peak_pressure);
+  file.write(group + "/peak_swing", checkpoint.peak_swing);
   file.write(group + "/falling_branch", checkpoint.falling_branch ? 1 : 0);
   file.write(group + "/rejected_steps", checkpoint.rejected_steps);
   file.write(group + "/newton_iterations", checkpoint.newton_iterations);
+  file.write(group + "/factorisations", checkpoint.factorisations);
   write_shared(file, group + "/blank", checkpoint.blank);
   write_instant(file, group + "/blank/now", checkpoint.blank);
 }
@@ -280,9 +283,12 @@ StampingCheckpoint read_checkpoint(const Hdf5Reader& file, const std::string& gr
   checkpoint.row = row[0];
   checkpoint.history = read_history(file, group + "/history");
   checkpoint.peak_force_balance = file.number(group + "/peak_force_balance");
+  checkpoint.peak_pressure = file.number(group + "/peak_pressure");
+  checkpoint.peak_swing = file.number(group + "/peak_swing");
   checkpoint.falling_branch = file.integer(group + "/falling_branch") != 0;
   checkpoint.rejected_steps = file.integer(group + "/rejected_steps");
   checkpoint.newton_iterations = file.integer(group + "/newton_iterations");
+  checkpoint.factorisations = file.integer(group + "/factorisations");
   const BlankState shared = read_shared(file, group + "/blank");
   checkpoint.blank = read_instant(file, group + "/blank/now", shared);
   return checkpoint;

@@ -17,8 +17,10 @@ struct StampingCheckpoint {
   State state;                      ///< after it
   HistoryRow row;                   ///< after it; the cumulative columns go on from here
   double peak_force_balance = 0.0;  ///< largest over the parts of all steps [N]
+  double peak_pressure = 0.0;       ///< of any node on any tool [Pa]
+  double peak_swing = 0.0;          ///< share of friction that swung in an accepted step [-]
   bool falling_branch = false;
-  int rejected_steps = 0, newton_iterations = 0;
+  int rejected_steps = 0, newton_iterations = 0, factorisations = 0;
   std::vector<HistoryRow> history;  ///< one row a step done
   BlankState blank;                 ///< after it, for files and pictures
 };

@@ -36,7 +36,8 @@ double smoothed_coefficient(const FrictionSettings& settings, const FrictionPoin
   return law_at(settings, point, speed).mu * ramp(speed / settings.smoothing).value;
 }
 
-// Gauss-Legendre, 4 points on [-1, 1].
+// Gauss-Legendre on [-1, 1], 4 and 2 points (weights 1).
+constexpr double two_gauss_points = 0.5773502691896258;
 constexpr std::array<double, 4> gauss_point = {-0.8611363115940526, -0.3399810435848563, 0.3399810435848563,
                                                0.8611363115940526};
 constexpr std::array<double, 4> gauss_weight = {0.3478548451374538, 0.6521451548625461, 0.6521451548625461,
@@ -45,9 +46,13 @@ constexpr std::array<double, 4> gauss_weight = {0.3478548451374538, 0.6521451548
 double integral_of_coefficient(const FrictionSettings& settings, const FrictionPoint& point, double from,
                                double to) {
   const double middle = 0.5 * (from + to), half = 0.5 * (to - from);
+  const auto at = [&](double share) { return smoothed_coefficient(settings, point, middle + half * share); };
+  // Laws vary over their own slip speed: two points leave 1e-8 of the change here, and the law is what costs.
+  constexpr double near = 0.1;
+  if (std::abs(to - from) <= near * std::max(from, to))
+    return half * (at(-two_gauss_points) + at(two_gauss_points));
   double sum = 0.0;
-  for (std::size_t k = 0; k < gauss_point.size(); ++k)
-    sum += gauss_weight[k] * smoothed_coefficient(settings, point, middle + half * gauss_point[k]);
+  for (std::size_t k = 0; k < gauss_point.size(); ++k) sum += gauss_weight[k] * at(gauss_point[k]);
   return half * sum;
 }
 
@@ -90,13 +95,14 @@ Vector3d friction_force(const FrictionSettings& settings, const FrictionPoint& p
 }
 
 Matrix3d friction_tangent(const FrictionSettings& settings, const FrictionPoint& point, const Vector3d& v,
-                          bool positive) {
+                          FrictionTangent kind) {
   const Vector3d slip = slip_velocity(point, v);
   const double speed = slip.norm();
   Resistance r = resistance(settings, point, speed);
-  if (positive) r.slope = std::max(r.slope, 0.0);
+  if (kind != FrictionTangent::exact) r.slope = std::max(r.slope, 0.0);
   const Matrix3d tangent_plane = Matrix3d::Identity() - point.normal * point.normal.transpose();
-  if (speed < 1e-9 * settings.smoothing) return point.load * r.over_speed * tangent_plane;
+  if (speed < 1e-9 * settings.smoothing || kind == FrictionTangent::secant)
+    return point.load * r.over_speed * tangent_plane;
   const Vector3d direction = slip / speed;
   return point.load *
          (r.over_speed * tangent_plane + (r.slope - r.over_speed) * direction * direction.transpose());

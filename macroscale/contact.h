@@ -50,10 +50,14 @@ friction::Friction law_at(const FrictionSettings& settings, const FrictionPoint&
 Eigen::Vector3d friction_force(const FrictionSettings& settings, const FrictionPoint& point,
                                const Eigen::Vector3d& v);
 
-/// Its derivative in v [N s/m], symmetric. `positive`: the falling branch of a law is cut to zero (convex
-/// part).
+/// How the derivative of friction is taken. `convex`: the falling branch of a law is cut to zero. `secant`: N
+/// g(U)/U in every direction of slip. As D is concave in U^2 (g(U)/U falls) that quadratic lies above D and
+/// touches it at U: a step along it never overshoots the kink where slip turns round.
+enum class FrictionTangent { exact, convex, secant };
+
+/// Derivative of the friction force in v [N s/m], symmetric.
 Eigen::Matrix3d friction_tangent(const FrictionSettings& settings, const FrictionPoint& point,
-                                 const Eigen::Vector3d& v, bool positive);
+                                 const Eigen::Vector3d& v, FrictionTangent kind);
 
 /// N Int g dU from one slip speed to another [W]; times dt this is the change of D. Gauss quadrature between
 /// the two speeds, so the error vanishes with their distance and a line search near the solution sees no

@@ -195,7 +195,7 @@ CornerHessian corner_hessian(const CornerLaw& law, const Vector3d& a, const Vect
   in_plane.bottomLeftCorner<2, 2>() = in_plane.topRightCorner<2, 2>().transpose();
   in_plane *= law.area;
 
-  if (filter == Filter::positive) {
+  if (filter != Filter::none) {
     make_positive(oaa, oab, obb);
     make_positive(in_plane);
   }

@@ -53,7 +53,9 @@ struct CornerHessian {
   Eigen::Matrix3d aa, ab, bb;
 };
 
-enum class Filter { none, positive };  ///< positive: negative eigenvalues set to zero (projected Newton)
+/// How second derivatives are taken. `positive`: negative eigenvalues set to zero (projected Newton);
+/// `bounding`: the same, and friction by its secant, a quadratic that lies above its potential.
+enum class Filter { none, positive, bounding };
 
 CornerHessian corner_hessian(const CornerLaw& law, const Eigen::Vector3d& a, const Eigen::Vector3d& b,
                              double angle_before, Filter filter);

@@ -196,6 +196,14 @@ bool on_falling_branch(const System& system, const StepData& step, const State& 
   return false;
 }
 
+double largest_pressure(const System& system, const StepData& step, const State& end) {
+  double largest = 0.0;
+  for (int k = 0; k < static_cast<int>(system.scene().tools.size()); ++k)
+    for (int i = 0; i < system.scene().blank.nodes(); ++i)
+      largest = std::max(largest, system.tool_contact(step, end.x, k, i).normal.pressure);
+  return largest;
+}
+
 void summarise(StampingResult& result, const Blank& blank, const State& state, double peak_force_balance) {
   StampingSummary& s = result.summary;
   s.steps = static_cast<int>(result.history.size());

@@ -21,6 +21,9 @@ double energy_residual_max(const std::vector<HistoryRow>& history);
 /// True where the friction law falls with slip speed at a loaded, sliding point.
 bool on_falling_branch(const System& system, const StepData& step, const State& end);
 
+/// Largest contact pressure of any node on any tool [Pa].
+double largest_pressure(const System& system, const StepData& step, const State& end);
+
 /// Fills result.summary from the history and the end state.
 void summarise(StampingResult& result, const Blank& blank, const State& state, double peak_force_balance);
 

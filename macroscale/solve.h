@@ -20,7 +20,7 @@ struct SolveOptions {
   double lag_limit = 0.05;           ///< a step whose friction still moves by more than this is rejected
   bool frictionless = false;         ///< friction off for this step
   int newton_limit = 60;             ///< iterations a pass
-  int lag_limit_iterations = 6;
+  int lag_limit_iterations = 16;     ///< updates of the friction loads a step
   int line_search_limit = 30;
   std::function<bool()> stop = {};  ///< asked before each Newton iteration; true ends the step (empty: never)
 };
@@ -31,9 +31,13 @@ struct StepSummary {
   bool stopped = false;  ///< SolveOptions::stop said so
   std::string reason;    ///< "converged", or what went wrong in words
   int newton_iterations = 0;
+  int factorisations = 0;  ///< those of matrices that turned out indefinite included
   int lag_iterations = 0;
   double residual = 0.0;  ///< largest nodal residual at the end [N]
   double lag_residual = 0.0;
+  /// Contact came and went with each update of the friction loads (a film that drags at the first touch): the
+  /// loads stand at the mean of that, and lag_residual says what share of friction swings about it.
+  bool swings = false;
   std::string worst;  ///< unknown with the largest residual, by name
 };
 

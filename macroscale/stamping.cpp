@@ -12,42 +12,14 @@
 #include "macroscale/quality.h"
 #include "macroscale/scene.h"
 #include "macroscale/solve.h"
+#include "macroscale/stamping_scene.h"
 #include "macroscale/system.h"
-#include "macroscale/tool_set.h"
 
 namespace heddle::macroscale {
 
 namespace {
 
 constexpr int punch = 0, die = 1, binder = 2;  // order of the tools in the scene
-
-// Die and binder stand where they have closed on a flat blank, so that its midplane is at z = 0 and the punch
-// touches it at t = 0 whatever the binder force.
-Scene stamping_scene(const StampingSpec& spec, const mesoscale::FabricProperties& fabric,
-                     const friction::Model& friction) {
-  Scene scene;
-  scene.blank = make_blank(outline_of(spec.blank), spec.blank.spacing, spec.blank.orientation);
-  scene.fabric = &fabric;
-  scene.friction = &friction;
-  const double half = 0.5 * fabric.thickness;
-  const TouchingTools tools = touching_tools(spec);
-  const double pressure = spec.process.binder_force / binder_area(spec);
-  const double closed = half - approach_at(fabric.compaction.curves().front(), pressure);
-  scene.tools = {{Role::punch, raised(tools.punch, half), Motion::driven, 0.0, 0.0},
-                 {Role::die, raised(tools.die, -closed), Motion::fixed, 0.0, 0.0},
-                 {Role::binder, raised(tools.binder, closed), Motion::loaded, spec.process.binder_force,
-                  spec.binder.mass}};
-  scene.blank_temperature = spec.process.blank_temperature;
-  scene.tool_temperature = spec.process.tool_temperature;
-  // Smoothing follows the punch speed, so a rate-free law stays rate-free; creep while sticking is below
-  // 2e-4 of the stroke.
-  scene.slip_smoothing = std::max(2e-4 * mean_speed(spec.process), 1e-6);
-  scene.mass_scaling = spec.artefact.mass_scaling;
-  scene.stabilisation = spec.artefact.stabilisation;
-  scene.shear_rate = spec.shear_rate;
-  scene.contact_pressure = spec.contact_pressure;
-  return scene;
-}
 
 // Rest under the binder force before the punch moves: the fabric is pressed through its thickness and stays
 // where it was laid, held in its plane as the friction to come would hold it. (Free, it would drift along
@@ -160,13 +132,19 @@ void describe_iterate(StampingFailure& failure, const System& system, const Step
 }
 
 // What a checkpoint says of the run, as its result.
-void take_over(StampingResult& result, const Blank& blank, StampingCheckpoint at) {
+void take_over(StampingResult& result, const Blank& blank, const mesoscale::FabricProperties& fabric,
+               StampingCheckpoint at) {
+  const double last_table_pressure = fabric.compaction.curves().front().y().back();
   StampingSummary& s = result.summary;
   s.nodes = blank.nodes();
   s.spacing = blank.spacing;
   s.rejected_steps = at.rejected_steps;
   s.newton_iterations = at.newton_iterations;
+  s.factorisations = at.factorisations;
   s.falling_branch = at.falling_branch;
+  s.pressure_max = at.peak_pressure;
+  s.crush_share = at.peak_pressure / last_table_pressure;
+  s.friction_swing = at.peak_swing;
   result.history = std::move(at.history);
   result.final_state = std::move(at.blank);
   summarise(result, blank, at.state, at.peak_force_balance);
@@ -177,12 +155,13 @@ void refuse(const std::string& fault) {
 }
 
 // A run that was complete: no tools, no laws, no equations.
-StampingResult result_of(const StampingSpec& spec, const StampingCheckpoint& last) {
+StampingResult result_of(const StampingSpec& spec, const mesoscale::FabricProperties& fabric,
+                         const StampingCheckpoint& last) {
   const Blank blank = make_blank(outline_of(spec.blank), spec.blank.spacing, spec.blank.orientation);
   refuse(fault_of(last, blank, spec.process.steps));
   StampingResult result;
   result.summary.completed = true;
-  take_over(result, blank, last);
+  take_over(result, blank, fabric, last);
   return result;
 }
 
@@ -246,8 +225,8 @@ class Run {
     return Ending::done;
   }
 
-  // One nominal step, in equal parts of stroke; a part that fails is halved, and the rest goes on with the
-  // halves.
+  // One nominal step, in equal parts of stroke. A part that fails is halved; after a pair that went well the
+  // halves are joined again.
   Ending advance_to(int step, int parts) {
     now_.row.newton_iterations = now_.row.lag_iterations = 0;
     now_.row.force_balance = 0.0;
@@ -260,6 +239,10 @@ class Run {
       if (ending == Ending::stopped) return ending;
       if (ending == Ending::done) {
         ++done;
+        if (pieces > parts && done % 2 == 0) {
+          done /= 2;
+          pieces /= 2;
+        }
         continue;
       }
       ++now_.rejected_steps;
@@ -300,6 +283,7 @@ class Run {
     tool_z[punch] = -stroke_at_time(spec_.process, time);
     const StepSummary summary = advance(system_, now_.state, dt, tool_z, {}, options_, end, attempt_);
     now_.newton_iterations += summary.newton_iterations;
+    now_.factorisations += summary.factorisations;
     now_.row.newton_iterations += summary.newton_iterations;
     now_.row.lag_iterations += summary.lag_iterations;
     if (summary.stopped) return Ending::stopped;
@@ -308,6 +292,8 @@ class Run {
       return Ending::failed;
     }
     add_to_history(now_.row, account(system_, attempt_, end));
+    now_.peak_pressure = std::max(now_.peak_pressure, largest_pressure(system_, attempt_, end));
+    if (summary.swings) now_.peak_swing = std::max(now_.peak_swing, summary.lag_residual);
     now_.falling_branch |= on_falling_branch(system_, attempt_, end);
     now_.peak_force_balance = std::max(now_.peak_force_balance, now_.row.force_balance);
     end.time = time;
@@ -358,7 +344,7 @@ class Run {
   }
 
   StampingResult finish() {
-    take_over(result_, scene_.blank, std::move(now_));
+    take_over(result_, scene_.blank, *scene_.fabric, std::move(now_));
     return std::move(result_);
   }
 
@@ -402,7 +388,7 @@ StampingResult run_stamping(const StampingSpec& spec, const mesoscale::FabricPro
   if (!problems.empty()) throw InputError(std::move(problems));
   if (control.resume_from && control.resume_from->step == spec.process.steps) {
     if (control.keep) control.keep(*control.resume_from, true);
-    return result_of(spec, *control.resume_from);
+    return result_of(spec, fabric, *control.resume_from);
   }
   for (const auto* file : {&spec.punch.file, &spec.die.file, &spec.binder.file})
     if (*file && !(*file)->loaded) throw std::logic_error("run_stamping: a tool file was not loaded");

@@ -155,8 +155,14 @@ struct StampingSummary {
                                     ///< < 0: the grid has not got them
   double symmetry_gap_draw_in = 0.0;
   double friction_work_outside = 0.0;  ///< share of friction work outside the calibrated box [-]
-  bool falling_branch = false;         ///< the law fell with speed somewhere: the solution may not be unique
+  double pressure_max = 0.0;           ///< of any node on any tool [Pa]
+  double crush_share = 0.0;     ///< pressure_max over the last pressure of the compaction table: above 1 that
+                                ///< curve was carried on along its last slope [-]
+  double friction_swing = 0.0;  ///< largest share of friction that came and went with each update of its
+                                ///< loads in a step that was accepted [-]; 0: all loads settled
+  bool falling_branch = false;  ///< the law fell with speed somewhere: the solution may not be unique
   int nodes = 0, steps = 0, rejected_steps = 0, newton_iterations = 0;
+  int factorisations = 0;           ///< of the matrix; more than Newton iterations where it was indefinite
   std::array<double, 2> spacing{};  ///< as used [m]
   bool completed = false;
   bool stopped = false;  ///< from outside, between two Newton iterations; no failure

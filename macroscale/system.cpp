@@ -392,6 +392,9 @@ void System::add_contact(const StepData& step, const VectorXd& x, Filter filter)
   const Blank& blank = scene_.blank;
   const FrictionSettings settings = friction_settings();
   const bool rubs = scene_.friction && !step.frictionless;
+  const FrictionTangent tangent = filter == Filter::none       ? FrictionTangent::exact
+                                  : filter == Filter::positive ? FrictionTangent::convex
+                                                               : FrictionTangent::secant;
   for (int k = 0, body = 0; k < static_cast<int>(scene_.tools.size()); ++k) {
     const bool loaded = body_[k] >= 0;
     std::vector<double>* row = loaded ? &body_row_[body] : nullptr;
@@ -401,9 +404,9 @@ void System::add_contact(const StepData& step, const VectorXd& x, Filter filter)
       // Pressing against a convex tool, the node would rather slide off: negative, so dropped when filtering.
       if (filter == Filter::none) stiffness -= blank.node_area[i] * contact.pressure * d.curvature;
       if (rubs && step.friction[k][i].load > 0.0)
-        stiffness += friction_tangent(settings, step.friction[k][i], relative_velocity(step, x, k, i),
-                                      filter == Filter::positive) /
-                     step.dt;
+        stiffness +=
+            friction_tangent(settings, step.friction[k][i], relative_velocity(step, x, k, i), tangent) /
+            step.dt;
       Eigen::Map<Matrix3d>(&blocks_[9 * block_start_[i]]) += stiffness;
       if (loaded)
         for (int c = 0; c < 3; ++c) (*row)[3 * i + c] = -stiffness(2, c);

@@ -52,12 +52,16 @@ Json stamping_json(const macroscale::StampingSummary& summary) {
   if (summary.symmetry_gap_shear >= 0.0) out["symmetry_gap_shear"] = summary.symmetry_gap_shear;
   if (summary.symmetry_gap_draw_in >= 0.0) out["symmetry_gap_draw_in"] = summary.symmetry_gap_draw_in;
   out["friction_work_outside_calibration"] = summary.friction_work_outside;
+  out["contact_pressure_max_kPa"] = 1e-3 * summary.pressure_max;
+  out["crush_share"] = summary.crush_share;
+  out["friction_swing"] = summary.friction_swing;
   out["falling_branch"] = summary.falling_branch;
   out["nodes"] = summary.nodes;
   out["spacing_mm"] = {1e3 * summary.spacing[0], 1e3 * summary.spacing[1]};
   out["steps"] = summary.steps;
   out["rejected_steps"] = summary.rejected_steps;
   out["newton_iterations"] = summary.newton_iterations;
+  out["factorisations"] = summary.factorisations;
   if (!summary.failure.empty()) out["failure"] = summary.failure;
   return out;
 }

@@ -176,6 +176,17 @@ void friction_range(Verdicts& out, const macroscale::StampingSummary& summary) {
             "Friction fell with speed somewhere: sliding may be unstable there, and the solution need not be "
             "the only one.");
   }
+  if (summary.friction_swing > 0.0)
+    out.add(
+        Tone::attention,
+        fmt::format("Contact came and went with every update of its friction at some nodes; up to {} of all "
+                    "friction stands for the mean of that.",
+                    percent(summary.friction_swing)));
+  if (summary.crush_share > 1.0)
+    out.add(Tone::attention,
+            fmt::format("Fabric was pressed to {:.3g} MPa, {:.2g} times the last pressure of its compaction "
+                        "table: there the table's last slope is carried on, and the tows would be crushed.",
+                        1e-6 * summary.pressure_max, summary.crush_share));
 }
 
 void friction_comparison(Verdicts& out, const ReportInput& input) {

@@ -48,12 +48,16 @@ struct Kept {
   StampingResult result;
 };
 
-Kept run(const StampingSpec& spec, StampingControl control = {}, double table_end = 5e-4,
+/// As stiff through the thickness as most tests have it, and so soft that the punch reaches its middle.
+constexpr double firm = 5e8, soft = 2e7;  // [Pa/m]
+
+Kept run(const StampingSpec& spec, StampingControl control = {}, double contact_stiffness = firm,
          const heddle::friction::Model& model = coulomb()) {
   Kept kept;
   control.keep = [&](const StampingCheckpoint& c, bool) { kept.checkpoints.push_back(bytes_of(c)); };
-  kept.result =
-      run_stamping(spec, make_fabric({.rate_consistency = 5.0, .table_end = table_end}), model, control);
+  kept.result = run_stamping(
+      spec, make_fabric({.rate_consistency = 5.0, .contact_stiffness = contact_stiffness, .table_end = 8e-4}),
+      model, control);
   return kept;
 }
 
@@ -129,7 +133,7 @@ TEST_CASE("friction with a memory goes on from a checkpoint to the same bits, an
   const bool resistance = GENERATE(true, false);
   const heddle::friction::Model model = resistance ? with_slip_resistance() : with_film_memory();
   const StampingSpec spec = small_case();
-  const Kept whole = run(spec, {}, 5e-4, model);
+  const Kept whole = run(spec, {}, firm, model);
   REQUIRE(whole.result.summary.completed);
   StampingCheckpoint checkpoint = from(whole.checkpoints[3]);
   for (const auto member : {&ContactState::slip, &ContactState::dwell, &ContactState::work_per_area})
@@ -140,7 +144,7 @@ TEST_CASE("friction with a memory goes on from a checkpoint to the same bits, an
   CHECK(any_contact(checkpoint.state, &ContactState::film_temperature) != resistance);
   StampingControl control;
   control.resume_from = &checkpoint;
-  CHECK(run(spec, control, 5e-4, model).checkpoints.back() == whole.checkpoints.back());
+  CHECK(run(spec, control, firm, model).checkpoints.back() == whole.checkpoints.back());
 
   // The check can fail: forgotten memory is another run.
   const auto forgotten =
@@ -152,7 +156,7 @@ TEST_CASE("friction with a memory goes on from a checkpoint to the same bits, an
       for (ContactState& m : of_tool) m.*member = 0.0;
     StampingControl from_poor;
     from_poor.resume_from = &poor;
-    const Kept other = run(spec, from_poor, 5e-4, model);
+    const Kept other = run(spec, from_poor, firm, model);
     CHECK(other.result.history.back().punch_force != whole.result.history.back().punch_force);
   }
 }
@@ -191,7 +195,7 @@ TEST_CASE("a run stopped between Newton iterations keeps its last whole step, an
 TEST_CASE("a stamping that fails says where its last attempt stood, and what stood out of balance",
           "[macroscale][checkpoint]") {
   const StampingSpec spec = small_case();
-  const Kept kept = run(spec, {}, 4e-5);  // the compaction table is too short
+  const Kept kept = run(spec, {}, soft);
   REQUIRE(kept.result.failure);
   REQUIRE_FALSE(kept.checkpoints.empty());
   const StampingFailure& failure = *kept.result.failure;
@@ -211,7 +215,7 @@ TEST_CASE("a stamping that fails says where its last attempt stood, and what sto
   const StampingCheckpoint checkpoint = from(kept.checkpoints.back());
   StampingControl control;
   control.resume_from = &checkpoint;
-  const Kept again = run(spec, control, 4e-5);
+  const Kept again = run(spec, control, soft);
   CHECK(again.result.summary.failure == kept.result.summary.failure);
   CHECK(again.result.final_state.position == kept.result.final_state.position);
   CHECK(again.result.summary.newton_iterations == kept.result.summary.newton_iterations);
@@ -219,7 +223,7 @@ TEST_CASE("a stamping that fails says where its last attempt stood, and what sto
 
 TEST_CASE("a Newton search that runs out of iterations leaves its worst nodes behind",
           "[macroscale][checkpoint]") {
-  // A blank that cannot close: the binder pushes it through its own compaction table at once.
+  // A blank that cannot close: the binder pushes it through its own middle at once.
   StampingSpec spec = small_case();
   spec.process.binder_force = 1e7;
   const Kept kept = run(spec);

@@ -1,5 +1,7 @@
 #include <catch2/catch.hpp>
 
+#include <cmath>
+
 #include "macroscale/contact.h"
 #include "tests/derivative_check.h"
 
@@ -54,7 +56,7 @@ TEST_CASE("friction force is the slope of its potential and its tangent the slop
   const double slope = friction_force(settings, point, v).dot(d);
   CHECK(derivative_gap(potential, 0.0, size, slope) < 1e-6);
   CHECK(derivative_gap(potential, 0.0, size, 1.01 * slope) > 1e-4);
-  const Matrix3d tangent = friction_tangent(settings, point, v, false);
+  const Matrix3d tangent = friction_tangent(settings, point, v, FrictionTangent::exact);
   for (int k = 0; k < 3; ++k) {
     const auto force = [&](double t) { return friction_force(settings, point, v + t * d)[k]; };
     CHECK(derivative_gap(force, 0.0, size, tangent.row(k).dot(d)) < 1e-6);
@@ -73,7 +75,7 @@ TEST_CASE("friction acts in the tangent plane only, against slip, with mu N when
   CHECK(force.norm() == Approx(0.3 * point.load).epsilon(1e-12));
   CHECK(force.normalized().dot(slip_velocity(point, v).normalized()) == Approx(1.0));
   CHECK(friction_force(settings, point, Vector3d::Zero()).norm() == 0.0);
-  CHECK(friction_tangent(settings, point, Vector3d::Zero(), true).allFinite());
+  CHECK(friction_tangent(settings, point, Vector3d::Zero(), FrictionTangent::convex).allFinite());
 }
 
 TEST_CASE("the friction potential does not depend on the path: power around a closed loop is zero",
@@ -88,4 +90,33 @@ TEST_CASE("the friction potential does not depend on the path: power around a cl
   const double pieces = friction_power_difference(settings, point, 2e-4, 1.7e-3) +
                         friction_power_difference(settings, point, 1.7e-3, 3e-3);
   CHECK(pieces == Approx(there).epsilon(1e-6));
+}
+
+TEST_CASE(
+    "a quadratic with the secant stiffness of friction lies above its potential, and no softer one does",
+    "[macroscale][contact]") {
+  const auto rate_law = rising();
+  heddle::friction::Model coulomb, falling;
+  coulomb.law = heddle::friction::Coulomb{0.3};
+  falling.law = heddle::friction::ExponentialDecay{0.5, 0.3, 10e-3};
+  const heddle::friction::Model* model = GENERATE_COPY(&rate_law, &coulomb, &falling);
+  const FrictionSettings settings{model, 1e-4};
+  const FrictionPoint point = loaded_point();
+  const double size = GENERATE(2e-5, 0.9e-4, 3e-3, 0.1);
+  const Vector3d v = slip_velocity(point, size * Vector3d(0.8, 0.5, 0.1));
+  const Vector3d force = friction_force(settings, point, v);
+  const Matrix3d secant = friction_tangent(settings, point, v, FrictionTangent::secant);
+  const auto above = [&](const Vector3d& w, double stiffness) {
+    const Vector3d d = w - v;
+    const double bound = force.dot(d) + 0.5 * stiffness * d.dot(secant * d);
+    return bound - friction_power_difference(settings, point, v.norm(), w.norm());
+  };
+  const double scale = force.norm() * v.norm();
+  const Vector3d across = point.normal.cross(v);
+  for (double turn : {0.0, 0.3, 1.5, 3.0, 3.14159})
+    for (double length : {0.0, 0.1, 0.5, 0.97, 1.0, 1.03, 2.0, 10.0})
+      CHECK(above(length * (std::cos(turn) * v + std::sin(turn) * across), 1.0) >= -1e-6 * scale);
+  // At the same speed the other way round both are equal, so one percent less does not hold.
+  CHECK(above(-v, 1.0) == Approx(0.0).margin(1e-9 * scale));
+  CHECK(above(-v, 0.99) < -1e-3 * scale);
 }

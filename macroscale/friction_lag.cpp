@@ -1,0 +1,115 @@
+#include "macroscale/friction_lag.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include <tbb/parallel_for.h>
+#include <Eigen/Geometry>
+
+#include "friction/hersey.h"
+
+namespace heddle::macroscale {
+
+namespace {
+
+using Eigen::Vector3d;
+using Eigen::VectorXd;
+
+friction::Context context_of(const Scene& scene, double pressure, double shear_angle) {
+  friction::Context context;
+  context.pressure = pressure;
+  context.fabric_temperature = scene.blank_temperature;
+  context.tool_temperature = scene.tool_temperature;
+  if (scene.contact_pressure == ContactPressure::real) {
+    const auto floored = friction::floored(pressure);
+    const auto area = scene.fabric->contact.evaluate(floored.value, shear_angle);
+    context.area_fraction = area.fraction;
+    context.area_slope = area.slope * floored.slope;
+  }
+  return context;
+}
+
+// Slip direction against the warp, both in the tangent plane of the contact [rad]; 0 at rest.
+double slip_angle(const Scene& scene, const VectorXd& x, int node, const Vector3d& normal,
+                  const Vector3d& v) {
+  const Blank& blank = scene.blank;
+  const auto [i, j] = blank.grid[node];
+  const auto neighbour = [&](int line) {
+    const int n = line < 0 || line > blank.nu ? -1 : blank.node(line, j);
+    return n < 0 ? node : n;
+  };
+  const int before = neighbour(i - 1), after = neighbour(i + 1);
+  const Vector3d tow = x.segment<3>(3 * after) - x.segment<3>(3 * before);
+  const Vector3d warp = tow - normal.dot(tow) * normal, slip = v - normal.dot(v) * normal;
+  return std::atan2(normal.dot(warp.cross(slip)), warp.dot(slip));
+}
+
+}  // namespace
+
+FrictionPoints freeze(const System& system, const StepData& step, const VectorXd& x,
+                      const std::vector<double>& shear_angle) {
+  const Scene& scene = system.scene();
+  const int nodes = scene.blank.nodes();
+  FrictionPoints points(scene.tools.size(), std::vector<FrictionPoint>(nodes));
+  if (step.frictionless || !scene.friction) return points;
+  for (int k = 0; k < static_cast<int>(scene.tools.size()); ++k)
+    tbb::parallel_for(0, nodes, [&, k](int i) {
+      const auto [d, contact] = system.tool_contact(step, x, k, i);
+      FrictionPoint& point = points[k][i];
+      point.memory = step.start->memory[k][i];
+      if (contact.pressure <= 0.0) return;
+      point.load = contact.pressure * scene.blank.node_area[i];
+      // A distance interpolated from samples has a gradient of length about 1: slip needs a true projection.
+      point.normal = d.normal.normalized();
+      point.context = context_of(scene, contact.pressure, shear_angle[i]);
+      point.context.time_step = step.dt;
+      point.context.slip_angle =
+          slip_angle(scene, x, i, point.normal, system.relative_velocity(step, x, k, i));
+    });
+  return points;
+}
+
+LagChange lag_change(const System& system, const StepData& step, const VectorXd& x,
+                     const FrictionPoints& before, const FrictionPoints& after) {
+  const FrictionSettings settings = system.friction_settings();
+  LagChange total;
+  double change = 0.0, sum = 0.0;
+  for (int k = 0; k < static_cast<int>(after.size()); ++k)
+    for (int i = 0; i < static_cast<int>(after[k].size()); ++i) {
+      if (after[k][i].load == 0.0 && before[k][i].load == 0.0) continue;
+      const Vector3d v = system.relative_velocity(step, x, k, i);
+      const auto force = [&](const FrictionPoint& p) -> Vector3d {
+        return p.load > 0.0 ? friction_force(settings, p, v) : Vector3d::Zero();
+      };
+      const Vector3d now = force(after[k][i]);
+      const double moved = (now - force(before[k][i])).norm();
+      total.largest = std::max(total.largest, moved);
+      change += moved;
+      sum += now.norm();
+    }
+  total.relative = sum > 0.0 ? change / sum : (change > 0.0 ? 1.0 : 0.0);
+  return total;
+}
+
+FrictionPoints blend(const System& system, const FrictionPoints& before, const FrictionPoints& after,
+                     double share, const std::vector<double>& shear_angle) {
+  const Scene& scene = system.scene();
+  FrictionPoints points = after;
+  for (std::size_t k = 0; k < points.size(); ++k)
+    for (std::size_t i = 0; i < points[k].size(); ++i) {
+      const FrictionPoint &old = before[k][i], &now = after[k][i];
+      const double kept = (1.0 - share) * old.load, added = share * now.load;
+      if (kept + added == 0.0) continue;
+      FrictionPoint& point = points[k][i];
+      if (now.load == 0.0) point = old;
+      point.load = kept + added;
+      point.normal = (kept * old.normal + added * now.normal).normalized();
+      const friction::Context last = point.context;
+      point.context = context_of(scene, point.load / scene.blank.node_area[i], shear_angle[i]);
+      point.context.time_step = last.time_step;
+      point.context.slip_angle = last.slip_angle;
+    }
+  return points;
+}
+
+}  // namespace heddle::macroscale

@@ -1,0 +1,15 @@
+#pragma once
+
+#include "friction/model.h"
+#include "macroscale/scene.h"
+#include "macroscale/stamping.h"
+#include "mesoscale/fabric_properties.h"
+
+namespace heddle::macroscale {
+
+/// Blank, tools and laws of a stamping, tools in the order punch, die, binder. Fabric and friction must
+/// outlive the scene.
+Scene stamping_scene(const StampingSpec& spec, const mesoscale::FabricProperties& fabric,
+                     const friction::Model& friction);
+
+}  // namespace heddle::macroscale
