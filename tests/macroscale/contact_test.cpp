@@ -2,6 +2,8 @@
 
 #include <cmath>
 
+#include <Eigen/Geometry>
+
 #include "macroscale/contact.h"
 #include "tests/derivative_check.h"
 
@@ -95,12 +97,11 @@ TEST_CASE("the friction potential does not depend on the path: power around a cl
 TEST_CASE(
     "a quadratic with the secant stiffness of friction lies above its potential, and no softer one does",
     "[macroscale][contact]") {
-  const auto rate_law = rising();
-  heddle::friction::Model coulomb, falling;
-  coulomb.law = heddle::friction::Coulomb{0.3};
-  falling.law = heddle::friction::ExponentialDecay{0.5, 0.3, 10e-3};
-  const heddle::friction::Model* model = GENERATE_COPY(&rate_law, &coulomb, &falling);
-  const FrictionSettings settings{model, 1e-4};
+  heddle::friction::Model model = rising();
+  const int law = GENERATE(0, 1, 2);  // rising with speed, constant, falling
+  if (law == 1) model.law = heddle::friction::Coulomb{0.3};
+  if (law == 2) model.law = heddle::friction::ExponentialDecay{0.5, 0.3, 10e-3};
+  const FrictionSettings settings{&model, 1e-4};
   const FrictionPoint point = loaded_point();
   const double size = GENERATE(2e-5, 0.9e-4, 3e-3, 0.1);
   const Vector3d v = slip_velocity(point, size * Vector3d(0.8, 0.5, 0.1));
