@@ -55,7 +55,7 @@ CLI::App* add_check(CLI::App& program, CheckOptions& options) {
 
 void add_export(CLI::App& program, ExportOptions& options) {
   CLI::App* command =
-      program.add_subcommand("export", "The friction law as another program takes it");
+      program.add_subcommand("export", "The friction law, or the solid cell, as another program takes it");
   command
       ->add_option("file", options.run.file,
                    "Configuration file (YAML), or the folder of a run or calibration")
@@ -63,9 +63,9 @@ void add_export(CLI::App& program, ExportOptions& options) {
   command
       ->add_option(
           "--to", options.target,
-          "abaqus: user subroutine FRIC_COEF; csv: table of mu")
+          "abaqus: user subroutine FRIC_COEF; csv: table of mu; ccx: the solid cell as a CalculiX deck")
       ->required()
-      ->check(CLI::IsMember({"abaqus", "csv"}));
+      ->check(CLI::IsMember({"abaqus", "csv", "ccx"}));
   command->add_option("-o,--output", options.run.output,
                       "Folder of the file (default: DIR/export, out/export/NAME)");
   add_assignments(*command, options.run.assignments);

@@ -92,3 +92,22 @@ TEST_CASE("a case without a study is refused with the way out", "[pipeline][stud
     CHECK(error.problems().front().id == "study.missing");
   }
 }
+
+TEST_CASE("a solid cell goes out as a CalculiX deck, and without one the way out is named",
+          "[pipeline][export]") {
+  const Scratch scratch;
+  pipeline::ExportOptions options;
+  options.run = small_study(scratch / "deck");
+  options.target = "ccx";
+  REQUIRE(pipeline::export_case(options) == pipeline::exit_done);
+  const std::string deck = pipeline::read_file(scratch / "deck" / "cell.inp");
+  CHECK(deck.find("*ELEMENT, TYPE=C3D8") != std::string::npos);
+  options.run.file = fs::path(heddle::test::source_dir) / "configs" / "unit_cell.yaml";
+  options.run.assignments.clear();
+  try {
+    pipeline::export_case(options);
+    FAIL("a cell that is not there went out");
+  } catch (const InputError& error) {
+    CHECK(error.problems().front().id == "export.solid");
+  }
+}
