@@ -169,6 +169,10 @@ std::vector<std::string> stage_lines(const Case& a_case) {
     lines.push_back(fmt::format("orientation study: {} blanks, {} friction samples",
                                 a_case.orientation_study->blanks.size(),
                                 a_case.orientation_study->friction.size()));
+  if (a_case.study)
+    lines.push_back(fmt::format("study: by `heddle study` alone, {} weaves at {} shear angles",
+                                mesoscale::study::points(*a_case.cell, *a_case.study).size(),
+                                a_case.study->shear_angles.size()));
   if (a_case.discover) lines.push_back("discover: by `heddle discover` alone, in its --data");
   if (a_case.calibrate) lines.push_back("calibrate: by `heddle calibrate` alone, to its --data");
   return lines;

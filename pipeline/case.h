@@ -15,6 +15,7 @@
 #include "pipeline/calibrate_keys.h"
 #include "pipeline/config_reader.h"
 #include "pipeline/discover_keys.h"
+#include "pipeline/study_keys.h"
 
 namespace heddle::pipeline {
 
@@ -62,6 +63,7 @@ struct Case {
   std::optional<macroscale::StampingSpec> stamping;
   bool grid_error = false;                                ///< the stamping is run once more on a coarser grid
   std::optional<OrientationStudySpec> orientation_study;  ///< runs the stamping once an angle
+  std::optional<mesoscale::study::StudySpec> study;       ///< what `heddle study` is to change of the weave
   std::optional<CalibrateSpec> calibrate;                 ///< what `heddle calibrate` is to fit
   std::optional<DiscoverSpec> discover;                   ///< what `heddle discover` is to look for
   std::vector<std::string> notes;                         ///< keys not used, and values that are assumed

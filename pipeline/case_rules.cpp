@@ -249,6 +249,8 @@ Problems check_between_keys(const Case& a_case, const ReadConfig& config) {
     append(problems, check_distinct(a_case.orientation_study->blanks, "orientation_study.blanks"));
     append(problems, check_distinct(a_case.orientation_study->friction, "orientation_study.friction"));
   }
+  if (a_case.study && !any_below(config.failed, {"weave", "cell", "study"}))
+    append(problems, check_study(*a_case.study, *a_case.cell));
   if (a_case.cell && a_case.stamping) append(problems, check_clearance(*a_case.cell, *a_case.stamping));
   drop_unknowable(problems, config.failed);
   return problems;

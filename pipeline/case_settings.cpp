@@ -301,6 +301,7 @@ Case case_of(const ReadConfig& config, const std::filesystem::path& folder) {
     if (settings.has("orientation_study.friction"))
       result.orientation_study->friction = settings.many("orientation_study.friction");
   }
+  if (runs(Stage::study)) result.study = study_of(settings);
   if (runs(Stage::calibrate)) result.calibrate = calibrate_of(settings);
   if (runs(Stage::discover)) result.discover = discover_of(settings);
   result.notes = config.notes;

@@ -54,14 +54,18 @@ CLI::App* add_check(CLI::App& program, CheckOptions& options) {
 }
 
 void add_export(CLI::App& program, ExportOptions& options) {
-  CLI::App* command = program.add_subcommand("export", "The friction law as another program takes it");
+  CLI::App* command =
+      program.add_subcommand("export", "The friction law, or the solid cell, as another program takes it");
   command
       ->add_option("file", options.run.file,
                    "Configuration file (YAML), or the folder of a run or calibration")
       ->required();
-  command->add_option("--to", options.target, "abaqus: user subroutine FRIC_COEF; csv: table of mu")
+  command
+      ->add_option(
+          "--to", options.target,
+          "abaqus: user subroutine FRIC_COEF; csv: table of mu; ccx: the solid cell as a CalculiX deck")
       ->required()
-      ->check(CLI::IsMember({"abaqus", "csv"}));
+      ->check(CLI::IsMember({"abaqus", "csv", "ccx"}));
   command->add_option("-o,--output", options.run.output,
                       "Folder of the file (default: DIR/export, out/export/NAME)");
   add_assignments(*command, options.run.assignments);
@@ -75,8 +79,10 @@ void add_discover(CLI::App& program, DiscoverOptions& options) {
   CLI::Option* file = command->get_option("file")->required(false);
   CLI::Option* data =
       command
-          ->add_option("--data", options.data, "Table of coupons, or of stampings where it has punch_force_N (CSV); FILE.yaml beside it "
-                       "tells of the rig")
+          ->add_option(
+              "--data", options.data,
+              "Table of coupons, or of stampings where it has punch_force_N (CSV); FILE.yaml beside it "
+              "tells of the rig")
           ->check(CLI::ExistingFile);
   CLI::Option* plan = command
                           ->add_option("--plan", options.run.file,
@@ -132,6 +138,7 @@ int dispatch(const std::vector<std::string>& arguments, const Commands& commands
   RunOptions run_options;
   RunOptions weave_options;
   RunOptions friction_options;
+  RunOptions study_options;
   CheckOptions check_options;
   CalibrateOptions calibrate_options;
   DiscoverOptions discover_options;
@@ -146,6 +153,10 @@ int dispatch(const std::vector<std::string>& arguments, const Commands& commands
       ->add_option("--data", calibrate_options.data, "Table of coupons (CSV)")
       ->required()
       ->check(CLI::ExistingFile);
+  add_run(program, "study", "What changes of the weave do to the unit cell", study_options)
+      ->footer(
+          "Weaves that the cache holds are not computed again: the same command goes on after an "
+          "interruption.");
   add_discover(program, discover_options);
   add_export(program, export_options);
 
@@ -159,8 +170,8 @@ int dispatch(const std::vector<std::string>& arguments, const Commands& commands
     program.exit(error, std::cout, std::cerr);
     return exit_bad_input;
   }
-  for (RunOptions* options :
-       {&run_options, &weave_options, &friction_options, &calibrate_options.run, &discover_options.run}) {
+  for (RunOptions* options : {&run_options, &weave_options, &friction_options, &study_options,
+                              &calibrate_options.run, &discover_options.run}) {
     options->cache = cache_folder();
     options->checkpoint_interval = checkpoint_interval(options->checkpoint_interval);
   }
@@ -168,6 +179,7 @@ int dispatch(const std::vector<std::string>& arguments, const Commands& commands
   if (check->parsed()) return commands.check(check_options);
   if (weave->parsed()) return commands.weave(weave_options);
   if (friction->parsed()) return commands.friction(friction_options);
+  if (program.got_subcommand("study")) return commands.study(study_options);
   if (program.got_subcommand("export")) return commands.export_law(export_options);
   if (program.got_subcommand("discover")) return commands.discover(discover_options);
   return commands.calibrate(calibrate_options);

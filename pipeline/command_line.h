@@ -15,6 +15,7 @@ struct Commands {
   std::function<int(const CalibrateOptions&)> calibrate;
   std::function<int(const DiscoverOptions&)> discover = {};
   std::function<int(const ExportOptions&)> export_law;
+  std::function<int(const RunOptions&)> study = {};
 };
 
 /// Reads the command line and calls the function it asks for.

@@ -10,6 +10,7 @@
 
 #include "pipeline/cache.h"
 #include "pipeline/case.h"
+#include "pipeline/coupon_report.h"
 #include "pipeline/export_vtu.h"
 #include "pipeline/friction_rig_stage.h"
 #include "pipeline/grid_error_stage.h"
@@ -81,6 +82,8 @@ void run_cell(const Case& a_case, RunFolder& folder, const Cache& cache, Finding
   folder.write("mesoscale/fabric.json", fabric_json(fabric));
   folder.write("mesoscale/contact.csv",
                contact_csv(fabric.contact, contact_pressures(), fabric.contact.log_fraction.parameter()));
+  folder.write("mesoscale/picture_frame.csv", picture_frame_csv(fabric));
+  folder.write("mesoscale/bias_extension.csv", bias_extension_csv(fabric));
   folder.write("mesoscale/tows.stl", tows_stl(findings.pictures->tows));
   folder.write("mesoscale/cell.vti", vti(findings.pictures->voxels));
   const auto& s = findings.cell->summary;

@@ -188,6 +188,7 @@ class ValueReader {
       return refuse("*.list"_family, "must be a list of names", example());
     for (const ConfigNode& item : node_.items) {
       setting.names.push_back(item.text);
+      if (key_.choices.empty() && !item.text.empty()) continue;
       if (std::find(key_.choices.begin(), key_.choices.end(), item.text) != key_.choices.end()) continue;
       const std::string near = nearest(item.text, key_.choices);
       problems_.push_back({"*.name"_family.of(key_.path), key_.path, flow_text(item), "is no name for it",
@@ -395,6 +396,10 @@ class ConfigReader {
     if (given("calibrate")) stages.insert(Stage::calibrate);
     if (given("discover")) stages.insert(Stage::discover);
     if (given("friction") || stages.size() > 1) stages.insert(Stage::friction);
+    if (given("study")) {
+      stages.insert(Stage::study);
+      stages.insert(Stage::cell);
+    }
     const bool voxels = config_.root.find_path("cell.voxels") != nullptr;
     const bool weave =
         given("weave") || (given("cell") && !voxels) || given("fabric") || given("forming") || given("solid");
@@ -457,6 +462,8 @@ class ConfigReader {
         return " by the orientation study";
       case Stage::grid_error:
         return " for the grid error";
+      case Stage::study:
+        return " by `heddle study`";
       case Stage::calibrate:
         return " by `heddle calibrate`";
       case Stage::discover:

@@ -39,7 +39,7 @@ std::string value_column(const Key& key) {
     case KeyType::file:
       return "file";
     case KeyType::names:
-      return "[key, ...]";
+      return key.choices.empty() ? "[text, ...]" : "[key, ...]";
     case KeyType::bits:
       return "[[0 or 1, ...], ...]";
     case KeyType::pair:

@@ -11,6 +11,7 @@
 #include "pipeline/discover_keys.h"
 #include "pipeline/friction_keys.h"
 #include "pipeline/solid_keys.h"
+#include "pipeline/study_keys.h"
 
 namespace heddle::pipeline {
 namespace {
@@ -451,6 +452,7 @@ std::vector<Key> all_keys() {
   append(keys, effect_keys());
   append(keys, artefact_keys());
   append(keys, study_keys());
+  append(keys, cell_study_keys());
   append(keys, calibrate_keys());
   append(keys, discover_keys());
   return keys;

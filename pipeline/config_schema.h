@@ -16,7 +16,7 @@ enum class KeyType {
   list,      ///< any number of quantities in a list, at least one
   rows,      ///< list of lists of `columns` quantities each
   bits,      ///< list of lists of 0 and 1; as text "10/01"
-  names,     ///< list of some of `choices`, at least one
+  names,     ///< list of some of `choices`, or of any words where there are none; at least one
   file       ///< path of a file that exists, relative to the configuration file
 };
 
@@ -38,6 +38,7 @@ enum class Stage {
   stamping,
   grid_error,
   orientation_study,
+  study,
   calibrate,
   discover
 };

@@ -3,6 +3,7 @@
 #include "friction/export/fric_coef.h"
 #include "friction/export/law_table.h"
 #include "mesoscale/cell.h"
+#include "mesoscale/solid/ccx_deck.h"
 #include "pipeline/case.h"
 #include "pipeline/commands.h"
 #include "pipeline/outputs.h"
@@ -48,11 +49,33 @@ void say_limits(const friction::ExportedLaw& law) {
                1e-3 * box.pressure_low, 1e-3 * box.pressure_high, 1e3 * box.speed_low, 1e3 * box.speed_high);
 }
 
+fs::path folder_of(const ExportOptions& options, const Case& a_case) {
+  if (!options.run.output.empty()) return options.run.output;
+  return fs::is_directory(options.run.file) ? options.run.file / "export"
+                                            : fs::path("out/export") / a_case.name;
+}
+
+// The solid cell for CalculiX, one deck for the unsheared ply.
+int export_cell(const ExportOptions& options, const Case& a_case, const fs::path& file) {
+  if (!a_case.solid)
+    throw InputError({{"export.solid"_rule, "solid", "", "is missing, and there is no cell to export",
+                       "Add `solid: {per_pitch: 16, layers: 16}` beside `weave:`.", file.string()}});
+  const fs::path deck = folder_of(options, a_case) / "cell.inp";
+  write_file(deck, mesoscale::solid::ccx_deck(a_case.cell->weave, 0.0, *a_case.solid));
+  if (options.run.print)
+    fmt::print(
+        "{}: `ccx -i cell` runs it: six mean stresses of 1 MPa, the strains from the displacements of set "
+        "DRIVERS in cell.dat; mm, N, MPa.\n",
+        deck.string());
+  return exit_done;
+}
+
 }  // namespace
 
 int export_case(const ExportOptions& options) {
   const fs::path file = case_file(options.run.file);
   const Case a_case = read_case(file, options.run.assignments);
+  if (options.target == "ccx") return export_cell(options, a_case, file);
   if (!a_case.friction)
     throw InputError({{"export.friction"_rule, "friction", "", "is missing, and there is no law to export",
                        "Add `friction:`; configs/friction_test.yaml shows one.", file.string()}});
@@ -61,9 +84,7 @@ int export_case(const ExportOptions& options) {
     throw InputError(std::move(problems));
   }
   const friction::ExportedLaw law = law_of(a_case);
-  const fs::path folder = !options.run.output.empty()          ? options.run.output
-                          : fs::is_directory(options.run.file) ? options.run.file / "export"
-                                                               : fs::path("out/export") / a_case.name;
+  const fs::path folder = folder_of(options, a_case);
   if (options.target == "abaqus") {
     write_file(folder / "heddle_friction.f", friction::fric_coef_fortran(law));
     if (!options.run.print) return exit_done;

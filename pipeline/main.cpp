@@ -6,6 +6,7 @@
 #include "core/problem.h"
 #include "pipeline/command_line.h"
 #include "pipeline/commands.h"
+#include "pipeline/study_command.h"
 
 int main(int argument_count, char** arguments) {
   using namespace heddle;
@@ -17,7 +18,8 @@ int main(int argument_count, char** arguments) {
                                       .check = pipeline::check_file,
                                       .calibrate = pipeline::calibrate_case,
                                       .discover = pipeline::discover_case,
-                                      .export_law = pipeline::export_case});
+                                      .export_law = pipeline::export_case,
+                                      .study = pipeline::study_case});
   } catch (const InputError& error) {
     std::cerr << error.what();
     return pipeline::exit_bad_input;

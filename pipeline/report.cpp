@@ -6,6 +6,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "pipeline/coupon_report.h"
 #include "pipeline/page.h"
 #include "pipeline/report_figures.h"
 #include "pipeline/report_solid.h"
@@ -270,6 +271,9 @@ std::string report_html(const ReportInput& input) {
   out += section("Forces and motion", forces(input));
   out += section("Is the answer sound?", soundness(input));
   out += section("The weave", weave(input));
+  // A stamping has enough to show; its weave has a report of its own.
+  if (input.fabric && !input.stamping)
+    out += section("Shear tests as the laws predict them", coupon_section(*input.fabric));
   out += section("The solid part", solid_part(input));
   out += section("Contact and friction", friction_section(input));
   out += section("The friction test as a machine", rig(input));

@@ -115,7 +115,8 @@ bool reads(ChainStage stage, const Key& key) {
     case Stage::grid_error:
       return stage == ChainStage::grid_error;
     case Stage::orientation_study:  // a list of runs, each with its own blank.orientation
-    case Stage::calibrate:          // commands of their own
+    case Stage::study:              // commands of their own
+    case Stage::calibrate:
     case Stage::discover:
       return false;
   }

@@ -7,6 +7,8 @@
 
 #include <fmt/format.h>
 
+#include "mesoscale/solid/woven_solid.h"
+
 namespace heddle::mesoscale::solid {
 
 namespace {
@@ -83,35 +85,6 @@ Problems check(const SolidSpec& spec) {
 
 namespace {
 
-// A weave as voxels, with what its contents are made of.
-struct WovenSolid {
-  VoxelCell cell;
-  std::array<TransverseIsotropy, 2> tows;
-  std::vector<Matrix6> stiffness;
-  std::vector<HeldStress> held;  // by HeldCause
-};
-
-WovenSolid woven_solid(const WeaveMatrix& weave, const PressedFabric& fabric, double fibre_modulus,
-                       const SolidSpec& spec) {
-  const IsotropicPhase fibre{fibre_modulus, spec.fibre_poisson};
-  const auto& [warp, weft] = fabric.crossing.tow;
-  WovenSolid solid;
-  solid.cell = sample(unit_cell(weave, fabric.crossing), fabric.thickness, spec.grid);
-  solid.tows = {tow(spec.tow_model, fibre, spec.resin, warp.fibre_fraction),
-                tow(spec.tow_model, fibre, spec.resin, weft.fibre_fraction)};
-  const std::array phases{stiffness(spec.resin), stiffness(solid.tows[0]), stiffness(solid.tows[1])};
-  solid.stiffness = content_stiffness(solid.cell, phases);
-  const auto held = [&](double fibre_strain, double resin_strain) {
-    const auto of_tow = [&](const TowGeometry& t) {
-      return schapery(fibre, fibre_strain, spec.resin, resin_strain, t.fibre_fraction);
-    };
-    const std::array strains{FreeStrain{resin_strain, resin_strain}, of_tow(warp), of_tow(weft)};
-    return content_held_stress(solid.cell, phases, strains);
-  };
-  solid.held = {held(spec.fibre_expansion, spec.resin_expansion), held(0.0, 1.0)};
-  return solid;
-}
-
 ShearedSolid sheared_solid(const FabricGeometry& fabric, double angle, double fibre_modulus,
                            const SolidSpec& spec) {
   const PressedFabric at_angle = pressed(fabric, angle);
@@ -159,6 +132,14 @@ SolidResult analyse(const WeaveSpec& weave, const SolidSpec& spec) {
   for (const double angle : spec.shear_angles)
     result.sheared.push_back(sheared_solid(fabric, angle, weave.fibre_modulus, spec));
   return result;
+}
+
+Ply ply(const WeaveSpec& weave, double shear_angle, const SolidSpec& spec) {
+  if (Problems problems = check(spec); !problems.empty()) throw InputError(std::move(problems));
+  const FabricGeometry fabric = fabric_geometry(weave, CellState::consolidated);
+  const PressedFabric at_angle = pressed(fabric, shear_angle);
+  const WovenSolid solid = woven_solid(fabric.weave, at_angle, weave.fibre_modulus, spec);
+  return {at_angle.thickness, plate_stiffness(elastic_cell(solid.cell, solid.stiffness), spec.solver)};
 }
 
 SolidResult analyse(const VoxelFileSpec& spec, const SolverOptions& solver) {

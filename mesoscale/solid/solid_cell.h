@@ -82,6 +82,15 @@ std::vector<BalancePair> imbalances(const SolidResult& result);
 /// @throws NumericalError  as the solver
 SolidResult analyse(const WeaveSpec& weave, const SolidSpec& spec);
 
+/// One ply of the weave's consolidated state with free faces, at a trellis angle; without the stack and the
+/// thermal resultants, which take longer than the ply.
+struct Ply {
+  double thickness = 0.0;  ///< [m]
+  PlateStiffness stiffness;
+};
+/// @throws as analyse
+Ply ply(const WeaveSpec& weave, double shear_angle, const SolidSpec& spec);
+
 /// The free strains that `held` of a result makes, {E, K} of the ply or the strain of the stack.
 Vector6 free_strain(const Matrix6& stiffness, const Vector6& held);
 
