@@ -13,6 +13,7 @@
 #include "pipeline/config_tree.h"
 #include "pipeline/discover/contrasts.h"
 #include "pipeline/discover_report.h"
+#include "pipeline/discover_shear.h"
 #include "pipeline/discover_stamping.h"
 #include "pipeline/run_folder.h"
 #include "pipeline/stages.h"
@@ -339,7 +340,9 @@ Settings discovered_settings(const Case& a_case, const DiscoveryRecord& record) 
 
 int discover_case(const DiscoverOptions& options) {
   if (!options.design.empty()) return plan_coupons(options);
-  if (discover::is_stamping_table(read_text_file(options.data))) return discover_stamping(options);
+  const std::string table = read_text_file(options.data);
+  if (discover::is_stamping_table(table)) return discover_stamping(options);
+  if (is_shear_table(table)) return discover_shear(options);
   Case a_case = read_friction_part(options.run);
   if (!a_case.discover) a_case.discover.emplace();
   if (options.seed) a_case.discover->seed = *options.seed;

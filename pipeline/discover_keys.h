@@ -8,7 +8,7 @@
 #include "core/problem.h"
 #include "pipeline/config_reader.h"
 #include "pipeline/config_schema.h"
-#include "pipeline/discover/noise.h"
+#include "pipeline/discover/noise_wish.h"
 
 namespace heddle::pipeline {
 

@@ -22,22 +22,20 @@ using discover::CouponPoint;
 
 /// A factor as people read it off the machine, where contrasts see logarithms and angles see sines.
 struct ShownFactor {
-  const char *name, *unit;
+  std::string name, unit;
   bool logarithmic;
   double (*of)(const CouponCell&);
 };
-const std::vector<ShownFactor>& shown_factors() {
-  constexpr double kelvin = 273.15;
-  static const std::vector<ShownFactor> all{
-      {"tool temperature", "°C", false,
-       [](const CouponCell& cell) { return cell.pull.tool_temperature - kelvin; }},
-      {"fabric temperature", "°C", false,
-       [](const CouponCell& cell) { return cell.pull.fabric_temperature - kelvin; }},
-      {"normal force", "N", true, [](const CouponCell& cell) { return cell.pull.normal_force; }},
-      {"velocity", "mm/s", true, [](const CouponCell& cell) { return 1e3 * cell.pull.velocity; }},
-      {"orientation", "°", false,
-       [](const CouponCell& cell) { return cell.pull.orientation * 180.0 / std::numbers::pi; }},
-      {"dwell", "s", false, [](const CouponCell& cell) { return cell.dwell; }}};
+std::vector<ShownFactor> shown_factors() {
+  std::vector<ShownFactor> all;
+  for (const discover::Factor& factor : discover::factors()) {
+    std::string name = factor.name, unit = factor.unit;
+    if (name == "day" || name == "warp_or_weft") continue;
+    const bool logarithmic = name == "normal_force" || name == "velocity";
+    std::ranges::replace(name, '_', ' ');
+    if (unit.starts_with("deg")) unit.replace(0, 3, "°");
+    all.push_back({name, unit, logarithmic, factor.shown});
+  }
   return all;
 }
 

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
+#include <numbers>
 #include <utility>
 
 namespace heddle::discover {
@@ -169,19 +170,28 @@ CouponCampaign campaign_of(const friction::CouponData& data, int stretches, doub
 }
 
 const std::vector<Factor>& factors() {
+  constexpr double kelvin = 273.15, degree = std::numbers::pi / 180.0;
   static const std::vector<Factor> all{
-      {"tool_temperature", "degC", [](const CouponCell& cell) { return cell.pull.tool_temperature; }},
-      {"fabric_temperature", "degC", [](const CouponCell& cell) { return cell.pull.fabric_temperature; }},
-      {"normal_force", "N", [](const CouponCell& cell) { return std::log(cell.pull.normal_force); }},
-      {"velocity", "mm/s", [](const CouponCell& cell) { return std::log(cell.pull.velocity); }},
+      {"tool_temperature", "degC", [](const CouponCell& cell) { return cell.pull.tool_temperature; },
+       [](const CouponCell& cell) { return cell.pull.tool_temperature - kelvin; }},
+      {"fabric_temperature", "degC", [](const CouponCell& cell) { return cell.pull.fabric_temperature; },
+       [](const CouponCell& cell) { return cell.pull.fabric_temperature - kelvin; }},
+      {"normal_force", "N", [](const CouponCell& cell) { return std::log(cell.pull.normal_force); },
+       [](const CouponCell& cell) { return cell.pull.normal_force; }},
+      {"velocity", "mm/s", [](const CouponCell& cell) { return std::log(cell.pull.velocity); },
+       [](const CouponCell& cell) { return 1e3 * cell.pull.velocity; }},
       {"orientation", "deg",
        [](const CouponCell& cell) {
          const double s = std::sin(2.0 * cell.pull.orientation);
          return s * s;
-       }},
-      {"dwell", "s", [](const CouponCell& cell) { return std::log1p(cell.dwell); }},
-      {"day", "", [](const CouponCell& cell) { return static_cast<double>(cell.day); }},
-      {"warp_or_weft", "deg", [](const CouponCell& cell) { return std::cos(2.0 * cell.pull.orientation); }}};
+       },
+       [](const CouponCell& cell) { return cell.pull.orientation / degree; }},
+      {"dwell", "s", [](const CouponCell& cell) { return std::log1p(cell.dwell); },
+       [](const CouponCell& cell) { return cell.dwell; }},
+      {"day", "", [](const CouponCell& cell) { return static_cast<double>(cell.day); },
+       [](const CouponCell& cell) { return static_cast<double>(cell.day + 1); }},
+      {"warp_or_weft", "deg", [](const CouponCell& cell) { return std::cos(2.0 * cell.pull.orientation); },
+       [](const CouponCell& cell) { return cell.pull.orientation / degree; }}};
   return all;
 }
 

@@ -51,9 +51,10 @@ CouponCampaign campaign_of(const friction::CouponData& data, int stretches, doub
 
 /// Numbers of the conditions that a campaign may vary, for contrasts and designs.
 struct Factor {
-  const char* name;                 ///< "tool_temperature"
-  const char* unit;                 ///< for people
-  double (*of)(const CouponCell&);  ///< as contrasts see it: logarithms of speed, load and dwell
+  const char* name;                    ///< "tool_temperature"
+  const char* unit;                    ///< for people
+  double (*of)(const CouponCell&);     ///< as contrasts see it: logarithms of speed, load and dwell
+  double (*shown)(const CouponCell&);  ///< as people read it off the machine, in `unit`; days from 1
 };
 const std::vector<Factor>& factors();
 

@@ -46,10 +46,11 @@ class Judge {
       if (block->hersey > 0.0) hersey.push_back(block->hersey);
     }
     const Changes changes = stacked(blocks);
-    const Observations observations{.value = Eigen::VectorXd::Zero(changes.baseline.rows()),
-                                    .covariance = covariance_of(noise, cells, hersey),
-                                    .coordinates = form_coordinates(cells, question_.noise.effect_form_length),
-                                    .form = question_.noise.effect_form};
+    const Observations observations{
+        .value = Eigen::VectorXd::Zero(changes.baseline.rows()),
+        .covariance = covariance_of(noise, cells, hersey),
+        .coordinates = form_coordinates(cells, question_.noise.effect_form_length),
+        .form = question_.noise.effect_form};
     const Whitened data(observations.value, observations.covariance);
     return criterion_of(fingerprints_of(changes, data, observations));
   }

@@ -44,15 +44,10 @@ std::vector<double> centred(std::vector<double> values) {
 }
 
 std::string level_text(const Factor& factor, const CouponCell& cell) {
-  const std::string name = factor.name, unit = factor.unit;
-  const auto in = [&](double value) { return fmt::format("{} = {:.4g} {}", name, value, unit); };
-  if (name == "tool_temperature") return in(cell.pull.tool_temperature - 273.15);
-  if (name == "fabric_temperature") return in(cell.pull.fabric_temperature - 273.15);
-  if (name == "normal_force") return in(std::round(cell.pull.normal_force));
-  if (name == "velocity") return in(1e3 * cell.pull.velocity);
-  if (name == "orientation" || name == "warp_or_weft") return in(cell.pull.orientation * 57.29577951308232);
-  if (name == "dwell") return in(cell.dwell);
-  return fmt::format("{} {}", name, cell.day + 1);
+  const std::string name = factor.name;
+  if (name == "day") return fmt::format("{} {}", name, factor.shown(cell));
+  const double value = factor.shown(cell);
+  return fmt::format("{} = {:.4g} {}", name, name == "normal_force" ? std::round(value) : value, factor.unit);
 }
 
 /// Measured loads of one nominal level differ in their last digits: levels are told apart to 3 %.

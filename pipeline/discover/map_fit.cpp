@@ -330,11 +330,15 @@ MapFit with_form_error(const ForwardModel& model, const Observations& observatio
     weights.push_back(
         std::make_shared<const Whitened>(observations.value, observations.covariance + share * share * form));
   MapFit best;
-  for (const auto& data : weights) {
-    MapFit moved = reweighed(model, fit, data);
-    if (best.data == nullptr || moved.log_evidence > best.log_evidence) best = std::move(moved);
+  double share = 0.0;
+  for (std::size_t k = 0; k < weights.size(); ++k) {
+    MapFit moved = reweighed(model, fit, weights[k]);
+    if (best.data != nullptr && !(moved.log_evidence > best.log_evidence)) continue;
+    best = std::move(moved);
+    share = form_shares[k];
   }
   best = map_fit(model, best.data, best.hypothesis, best.z, options);
+  best.form_share = share;
   if (!std::isfinite(best.log_evidence)) return best;
   double sum = 0.0;
   for (const auto& data : weights) {

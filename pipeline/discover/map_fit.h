@@ -44,6 +44,7 @@ struct MapFit {
   /// ln of the evidence: Int exp(-|residual|^2/2)/sqrt(det C) prior(z) dz; Laplace's approximation, with each
   /// coordinate's mass between its bounds.
   double log_evidence = 0.0;
+  double form_share = 0.0;  ///< of Observations::form that `data` allows its effects
   bool converged = false;
   int evaluations = 0;  ///< predictions asked for
 };

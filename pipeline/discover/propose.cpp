@@ -143,7 +143,7 @@ Outlook outlook_of(const CouponQuestion& question, const Shared& shared, const M
   for (std::size_t k = 0; k < here_shares.size(); ++k) {
     Eigen::VectorXd share(size);
     share << here_shares[k], there_shares[k];
-    covariance += form_covariance(share, shared.coordinates, question.noise.effect_form);
+    covariance += form_covariance(share, shared.coordinates, fit.form_share * question.noise.effect_form);
   }
   const Whitened data(Eigen::VectorXd::Zero(n), covariance.topLeftCorner(n, n));
   const Eigen::VectorXd residual = data(fit.data->unwhitened(fit.residual));

@@ -76,7 +76,7 @@ std::vector<Hypothesis> pairs_to_try(const std::vector<Scored>& singles,
     const MapFit& fit = singles[k].fit;
     const std::size_t first = fit.hypothesis[0];
     const BesideBaseline beside(fit.jacobian);
-    const Eigen::VectorXd gap = beside.gap_of(fit.residual);
+    const Eigen::VectorXd gap = beside.gap_of(fit);
     std::vector<std::pair<double, std::size_t>> partners;
     for (std::size_t other = 0; other < signatures.size(); ++other) {
       if (model.candidates[other].id == model.candidates[first].id) continue;
@@ -150,7 +150,7 @@ SearchResult search(const ForwardModel& model, const Observations& observations,
   result.log_evidence_none = result.baseline.log_evidence;
   if (!std::isfinite(result.log_evidence_none)) return result;
   const BesideBaseline beside(result.baseline.jacobian);
-  result.gap = beside.gap_of(result.baseline.residual);
+  result.gap = beside.gap_of(result.baseline);
 
   const std::size_t count = model.candidates.size();
   std::vector<std::vector<Signature>> signatures(count);

@@ -88,7 +88,7 @@ std::vector<Kernel> kernels_of(const std::vector<CouponCell>& cells, Eigen::Inde
 std::vector<Shape> shapes_of(const std::vector<CouponCell>& cells, const MapFit& fit, double pitch) {
   const Whitened& data = *fit.data;
   const BesideBaseline beside(fit.jacobian);
-  const Eigen::VectorXd gap = -beside.gap_of(fit.residual);  // measured less model
+  const Eigen::VectorXd gap = -beside.gap_of(fit);  // measured less model
   std::map<std::string, std::vector<Shape>> found;
   for (const Kernel& kernel : kernels_of(cells, data.size(), pitch)) {
     const Eigen::MatrixXd seen = beside(data(kernel.root));
@@ -127,17 +127,12 @@ std::vector<ShapePoint> curve_of(const Shape& shape, const std::vector<CouponCel
     int count = 0;
   };
   const std::string over = shape.over.substr(0, shape.over.find(" x "));
+  const auto factor = std::ranges::find_if(factors(), [&](const Factor& f) { return over == f.name; });
   std::map<long, Sum> levels;
   Eigen::Index row = 0;
   for (const CouponCell& cell : cells)
     for (const CouponPoint& point : cell.points) {
-      double at = 1e3 * point.slip;  // [mm]
-      if (over == "tool_temperature") at = cell.pull.tool_temperature - 273.15;
-      if (over == "fabric_temperature") at = cell.pull.fabric_temperature - 273.15;
-      if (over == "normal_force") at = cell.pull.normal_force;
-      if (over == "velocity") at = 1e3 * cell.pull.velocity;
-      if (over == "orientation" || over == "warp_or_weft") at = cell.pull.orientation * 180.0 / std::numbers::pi;
-      if (over == "dwell") at = cell.dwell;
+      const double at = factor == factors().end() ? 1e3 * point.slip : factor->shown(cell);  // slip in mm
       Sum& sum = levels[std::lround(50.0 * std::log(std::max(at, 1e-3)))];
       sum.at += at;
       sum.gap += shape.mean[row];

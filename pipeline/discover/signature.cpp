@@ -10,15 +10,14 @@ BesideBaseline::BesideBaseline(const Eigen::MatrixXd& slopes) {
   const Eigen::JacobiSVD<Eigen::MatrixXd> svd(slopes, Eigen::ComputeThinU);
   directions_ = svd.matrixU();
   shrink_ = (1.0 + svd.singularValues().array().square()).rsqrt() - 1.0;
-  grow_ = (1.0 + svd.singularValues().array().square()).sqrt() - 1.0;
 }
 
 Eigen::MatrixXd BesideBaseline::operator()(const Eigen::MatrixXd& columns) const {
   return columns + directions_ * (shrink_.asDiagonal() * (directions_.transpose() * columns));
 }
 
-Eigen::VectorXd BesideBaseline::gap_of(const Eigen::VectorXd& fitted_residual) const {
-  return fitted_residual + directions_ * (grow_.asDiagonal() * (directions_.transpose() * fitted_residual));
+Eigen::VectorXd BesideBaseline::gap_of(const MapFit& fit) const {
+  return (*this)(fit.residual - fit.jacobian * fit.z);
 }
 
 namespace {

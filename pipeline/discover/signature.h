@@ -15,14 +15,14 @@ class BesideBaseline {
   explicit BesideBaseline(const Eigen::MatrixXd& slopes);
   /// (I + J J^T)^(-1/2) of changes at fixed numbers of the baseline.
   Eigen::MatrixXd operator()(const Eigen::MatrixXd& columns) const;
-  /// The residual of the most probable numbers, as it is seen from the prior mean: (I + J J^T)^(1/2) of it,
-  /// since the fit took up its part. Standard normal where nothing is missing.
-  Eigen::VectorXd gap_of(const Eigen::VectorXd& fitted_residual) const;
+  /// The residual of a fit as it is seen from the prior mean: (I + J J^T)^(-1/2) (r - J z), J its slopes.
+  /// Standard normal where nothing is missing. At the most probable numbers this is (I + J J^T)^(1/2) r, but
+  /// not where a number lies at its bound.
+  Eigen::VectorXd gap_of(const MapFit& fit) const;
 
  private:
   Eigen::MatrixXd directions_;  ///< left singular vectors of J
   Eigen::VectorXd shrink_;      ///< by how much each shrinks, less 1
-  Eigen::VectorXd grow_;        ///< the inverse, less 1
 };
 
 /// Change of the whitened observations per unit of an effect's amplitude coordinate, at the baseline.

@@ -63,7 +63,7 @@ std::vector<std::string> set_of(const ForwardModel& model, const SearchResult& r
 }
 
 double squared_gap(const MapFit& fit) {
-  return BesideBaseline(fit.jacobian).gap_of(fit.residual).squaredNorm();
+  return BesideBaseline(fit.jacobian).gap_of(fit).squaredNorm();
 }
 
 double top_evidence(const std::vector<Shape>& shapes) {

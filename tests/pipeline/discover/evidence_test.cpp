@@ -9,41 +9,13 @@
 #include "pipeline/discover/signature.h"
 #include "pipeline/discover/validate.h"
 #include "pipeline/discover/verdict.h"
+#include "tests/pipeline/discover/line_world.h"
 
 using namespace heddle;
 using namespace heddle::discover;
+using namespace heddle::test;
 
 namespace {
-
-Prior normal(double mean, double sd) {
-  return {.kind = Prior::Kind::normal, .centre = mean, .scale = sd};
-}
-Prior half_normal(double scale) {
-  return {.kind = Prior::Kind::half_normal, .scale = scale, .low = 0.0};
-}
-
-/// y = level + slope x, and an effect that adds amplitude f(x).
-struct Line {
-  Eigen::VectorXd x = Eigen::VectorXd::LinSpaced(12, -1.0, 1.0);
-  ForwardModel model(const Prior& amplitude, bool curved) const {
-    ForwardModel forward;
-    forward.baseline = {{"level", "", normal(0.0, 1.0)}, {"slope", "", normal(0.0, 0.5)}};
-    Candidate bend;
-    bend.id = "bend";
-    bend.numbers = {{"bend.amplitude", "", amplitude}};
-    forward.candidates = {bend};
-    forward.predict = [at = x, curved](const Trial& trial) -> Eigen::VectorXd {
-      Eigen::VectorXd y = trial.baseline[0] + (trial.baseline[1] * at.array());
-      for (const auto& [effect, values] : trial.effects)
-        for (Eigen::Index i = 0; i < y.size(); ++i) {
-          const double added = values[0] * at[i] * at[i];
-          y[i] += curved ? std::expm1(added) : added;
-        }
-      return y;
-    };
-    return forward;
-  }
-};
 
 /// ln of the mean likelihood over prior draws.
 double brute_force(const ForwardModel& model, const Whitened& data, const Hypothesis& hypothesis, int draws) {
@@ -63,13 +35,6 @@ double brute_force(const ForwardModel& model, const Whitened& data, const Hypoth
   double sum = 0.0;
   for (const double value : logs) sum += std::exp(value - top);
   return top + std::log(sum / draws) - 0.5 * data.log_determinant();
-}
-
-std::shared_ptr<const Whitened> measured(const Line& line, double bend, double sd) {
-  Random random(3);
-  Eigen::VectorXd y = 0.3 + 0.2 * line.x.array() + bend * line.x.array().square();
-  for (double& value : y) value += sd * random.normal();
-  return std::make_shared<const Whitened>(y, sd * sd * Eigen::MatrixXd::Identity(y.size(), y.size()));
 }
 
 }  // namespace
@@ -123,7 +88,7 @@ TEST_CASE("beside the baseline noise is white: scores and squares of the gap kee
       const auto data = std::make_shared<const Whitened>(y, assumed);
       const MapFit fit = map_fit(model, data, {}, Eigen::VectorXd::Zero(2));
       const BesideBaseline beside(fit.jacobian);
-      const Eigen::VectorXd gap = beside.gap_of(fit.residual);
+      const Eigen::VectorXd gap = beside.gap_of(fit);
       if (score != nullptr) *score = strongest(signatures_of(model, *data, fit, beside, gap, 0))->score;
       return gap.squaredNorm();
     };

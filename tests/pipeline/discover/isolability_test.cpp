@@ -184,7 +184,7 @@ TEST_CASE("an amplitude one standard deviation above the detectable is seen in f
     const MapFit fit = map_fit(plan.forward, data, {}, plan.baseline.z);
     const BesideBaseline beside(fit.jacobian);
     const std::vector<Signature> signatures =
-        signatures_of(plan.forward, *data, fit, beside, beside.gap_of(fit.residual), sight.effect);
+        signatures_of(plan.forward, *data, fit, beside, beside.gap_of(fit), sight.effect);
     seen += signatures.front().score > 3.0 ? 1 : 0;
   }
   const double rate = static_cast<double>(seen) / campaigns,
