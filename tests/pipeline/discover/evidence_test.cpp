@@ -104,6 +104,20 @@ TEST_CASE("beside the baseline noise is white: scores and squares of the gap kee
   CHECK(unshared > 13.0);  // a day that is not modelled shows as a gap
 }
 
+TEST_CASE("a number that lies at its bound leaves the gap that a free one leaves", "[discover][evidence]") {
+  const Line line;
+  ForwardModel model = line.model(normal(0.0, 0.4), false);
+  const auto data = measured(line, 0.3, 0.1);  // its slope is 0.2
+  const MapFit free = map_fit(model, data, {}, Eigen::VectorXd::Zero(2));
+  model.baseline[1].prior.high = 0.0;
+  const MapFit held = map_fit(model, data, {}, Eigen::VectorXd::Zero(2));
+  REQUIRE(held.trial.baseline[1] == 0.0);
+  REQUIRE(free.trial.baseline[1] > 0.1);
+  const Eigen::VectorXd gap = BesideBaseline(free.jacobian).gap_of(free);
+  CHECK(BesideBaseline(held.jacobian).gap_of(held).isApprox(gap, 1e-6));
+  CHECK((held.residual - free.residual).norm() > 0.1 * gap.norm());  // as fitted they differ
+}
+
 TEST_CASE("the tail of chi-square is the published one", "[discover][verdict]") {
   CHECK(chi_square_tail(18.307, 10.0) == Approx(0.05).margin(1e-3));
   CHECK(chi_square_tail(135.807, 100.0) == Approx(0.01).margin(5e-4));
