@@ -39,8 +39,11 @@ class HypothesisPrior {
   double ids_ = 0.0;
 };
 
-/// Starts of a single effect: its strongest shape, and the strongest of the other sign or, failing that, the
-/// middle of its shapes.
+/// Standard deviations of its prior at which a number of the baseline has bent.
+constexpr double far_off = 1.5;
+
+/// Starts of a single effect: its strongest shape, the strongest other one, and the strongest from the middle
+/// of the baseline's prior, since a baseline that bends for what it lacks may lie far from where it belongs.
 std::vector<Eigen::VectorXd> starts_of(const ForwardModel& model, const MapFit& baseline,
                                        const std::vector<Signature>& signatures) {
   if (signatures.empty()) return {baseline.z};  // a choice without numbers
@@ -53,6 +56,11 @@ std::vector<Eigen::VectorXd> starts_of(const ForwardModel& model, const MapFit& 
       starts.push_back(start_from(model, baseline, *other));
       break;
     }
+  if (baseline.z.cwiseAbs().maxCoeff() > far_off) {
+    starts.push_back(starts.front());
+    starts.back().head(baseline.z.size()).setZero();
+    starts.back()[baseline.z.size()] = order.front()->amplitude;
+  }
   return starts;
 }
 
