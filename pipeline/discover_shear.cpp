@@ -6,6 +6,7 @@
 #include <cmath>
 #include <map>
 #include <numbers>
+#include <optional>
 #include <utility>
 
 #include "core/text_file.h"
@@ -21,18 +22,17 @@ namespace {
 
 constexpr double degree = std::numbers::pi / 180.0;
 
-/// Value and rate of a curve at an angle between its points; nothing beyond them.
-const ShearPoint* between(const ShearCurve& curve, double angle, ShearPoint& at) {
+/// Flow and rate of a curve at an angle between two of its points; empty beyond them.
+std::optional<ShearPoint> at_angle(const ShearCurve& curve, double angle) {
   for (std::size_t k = 1; k < curve.points.size(); ++k) {
     const ShearPoint &a = curve.points[k - 1], &b = curve.points[k];
     if (angle < a.shear_angle || angle > b.shear_angle || !(b.shear_angle > a.shear_angle)) continue;
     const double share = (angle - a.shear_angle) / (b.shear_angle - a.shear_angle);
-    at.shear_angle = angle;
-    at.flow = std::lerp(a.flow, b.flow, share);
-    at.shear_rate = std::lerp(a.shear_rate, b.shear_rate, share);
-    return &at;
+    return ShearPoint{.shear_angle = angle,
+                      .shear_rate = std::lerp(a.shear_rate, b.shear_rate, share),
+                      .flow = std::lerp(a.flow, b.flow, share)};
   }
-  return nullptr;
+  return {};
 }
 
 std::string tests_csv(const std::vector<ShearCurve>& curves, const mesoscale::FabricProperties& fabric) {
@@ -79,10 +79,10 @@ std::vector<ShearGap> shear_gaps(const std::vector<ShearCurve>& curves,
       ShearGap gap{.test = name.first, .condition = name.second, .shear_angle = 5.0 * k * degree};
       std::vector<double> flows;
       for (const ShearCurve* curve : list) {
-        ShearPoint at;
-        if (between(*curve, gap.shear_angle, at) == nullptr) continue;
-        flows.push_back(at.flow);
-        gap.model += mesoscale::shear_flow(fabric, at.shear_angle, at.shear_rate, curve->temperature);
+        const std::optional<ShearPoint> at = at_angle(*curve, gap.shear_angle);
+        if (!at) continue;
+        flows.push_back(at->flow);
+        gap.model += mesoscale::shear_flow(fabric, at->shear_angle, at->shear_rate, curve->temperature);
       }
       if (flows.empty()) continue;
       gap.samples = static_cast<int>(flows.size());
@@ -99,9 +99,10 @@ int discover_shear(const DiscoverOptions& options) {
   Case a_case = read_case(options.run.file, options.run.assignments);
   a_case.stamping.reset();
   if (!a_case.cell)
-    throw InputError({{"discover.shear.case"_rule, "weave", "",
-                       "must be there: shear tests are compared with what the weave's laws say",
-                       "Give the case a weave, as configs/unit_cell.yaml has it.", options.run.file.string()}});
+    throw InputError(
+        {{"discover.shear.case"_rule, "weave", "",
+          "must be there: shear tests are compared with what the weave's laws say",
+          "Give the case a weave, as configs/unit_cell.yaml has it.", options.run.file.string()}});
   const std::vector<ShearCurve> curves =
       parse_shear_tests(read_text_file(options.data), options.data.filename().string());
   const mesoscale::FabricProperties fabric = mesoscale::analyse(*a_case.cell).fabric;
