@@ -3,12 +3,15 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <catch2/catch.hpp>
 #include <cmath>
 #include <numbers>
 
 #include "pipeline/discover_shear.h"
+#include "pipeline/outputs.h"
 #include "tests/macroscale/sample_fabric.h"
+#include "tests/pipeline/scratch.h"
 #include "tests/source_dir.h"
 
 using namespace heddle;
@@ -151,6 +154,23 @@ TEST_CASE("a table of shear tests is refused with every problem and its line",
   std::string other;
   for (int k = 1; k <= 4; ++k) other += fmt::format("torsion,c,a,150,100,1,180,{},1\n", k);
   CHECK(problems_of(strip_header + other) == Ids{"discover.shear.test"});
+}
+
+TEST_CASE("the command leaves measured and predicted flow of every point, and names nothing",
+          "[pipeline][discover][shear tests]") {
+  const test::Scratch scratch;
+  write_file(scratch / "frames.csv",
+             frame_header + frame_curve("a") + frame_curve("b", 250.0, 180.0, 1.0, 1.2));
+  DiscoverOptions options;
+  options.run.file = std::filesystem::path(test::source_dir) / "configs/unit_cell.yaml";
+  options.run.output = scratch / "out";
+  options.run.print = false;
+  options.data = scratch / "frames.csv";
+  REQUIRE(discover_shear(options) == exit_done);
+  const std::string points = read_file(scratch / "out/discover/shear_tests.csv");
+  CHECK(std::ranges::count(points, '\n') == 11);  // a header, and five points of two pieces
+  const std::string gaps = read_file(scratch / "out/discover/shear_gap.csv");
+  CHECK_THAT(gaps, Catch::Contains("picture_frame,hot,10,2,"));
 }
 
 TEST_CASE("shear tests of a case without a weave are refused",
