@@ -1,10 +1,12 @@
 #include "score.h"
+#include "case_list.h"
 
 #include <algorithm>
 #include <catch2/catch.hpp>
 #include <nlohmann/json.hpp>
 #include <stdexcept>
 
+#include "case_list.h"
 #include "history.h"
 #include "page.h"
 
@@ -74,6 +76,16 @@ void check_rate(const Rate& rate, int hits, int of) {
 }
 
 }  // namespace
+
+TEST_CASE("the list of cases has a line a case: truth, answer, and what stood first", "[blind]") {
+  Scored scored{.manifest = {}, .cases = example()};
+  scored.manifest.campaign = "smoke";
+  const std::string list = case_list({scored});
+  CHECK(std::ranges::count(list, '\n') == 13);
+  CHECK_THAT(list, Catch::Contains(",4,single,orientation,") && Catch::Contains(",NO_GAP,0,") &&
+                       Catch::Contains(",ONE_OF,1,wear adhesion load_cell_offset,wear+adhesion,0.7000,"));
+  CHECK_THAT(list, Catch::Contains("no report,0,,,,,\n"));
+}
 
 TEST_CASE("twelve cases worked by hand have the figures of the scorer", "[blind]") {
   const std::vector<Judged> cases = example();
