@@ -50,6 +50,7 @@ Eigen::MatrixXd root_of(const std::function<double(Eigen::Index, Eigen::Index)>&
 /// A kernel of unit amplitude as columns, over some coordinates.
 struct Kernel {
   std::string over;
+  int factors = 1;
   double length = 0.0;
   Eigen::MatrixXd root;
 };
@@ -60,20 +61,20 @@ std::vector<Kernel> kernels_of(const std::vector<CouponCell>& cells, Eigen::Inde
   for (const Coordinate& c : coordinates)
     for (const double length : lengths)
       kernels.push_back(
-          {c.name, length,
+          {c.name, 1, length,
            root_of([&](auto i, auto j) { return gaussian(c.at[i] - c.at[j], length); }, {&c.at}, size)});
   for (std::size_t a = 0; a < coordinates.size(); ++a)
     for (std::size_t b = a + 1; b < coordinates.size(); ++b) {
       const Eigen::VectorXd &x = coordinates[a].at, &y = coordinates[b].at;
       const double length = lengths.back();
       kernels.push_back(
-          {coordinates[a].name + " x " + coordinates[b].name, length,
+          {coordinates[a].name + " x " + coordinates[b].name, 2, length,
            root_of(
                [&](auto i, auto j) { return gaussian(x[i] - x[j], length) * gaussian(y[i] - y[j], length); },
                {&x, &y}, size)});
     }
   if (pitch > 0.0) {
-    Kernel ripple{"tow pitch", pitch, Eigen::MatrixXd(size, 2)};
+    Kernel ripple{"tow pitch", 1, pitch, Eigen::MatrixXd(size, 2)};
     const Eigen::VectorXd phase = of_points(cells, [&](const CouponCell&, const CouponPoint& point) {
       return 2.0 * std::numbers::pi * point.slip / pitch;
     });
@@ -99,6 +100,7 @@ std::vector<Shape> shapes_of(const std::vector<CouponCell>& cells, const MapFit&
       const Eigen::ArrayXd weight = 1.0 + square * eigen.eigenvalues().array().max(0.0);
       Shape shape;
       shape.over = kernel.over;
+      shape.factors = kernel.factors;
       shape.amplitude = amplitude;
       shape.length = kernel.length;
       shape.log_evidence = 0.5 * (square * along.array().square() / weight).sum() - 0.5 * weight.log().sum();

@@ -14,6 +14,7 @@ namespace heddle::discover {
 /// best amplitude and length are taken from a grid.
 struct Shape {
   std::string over;        ///< "tool_temperature", "slip", "velocity x tool_temperature", "tow pitch"
+  int factors = 1;         ///< that it is a function of
   double amplitude = 0.0;  ///< standard deviation of ln F [-]
   double length =
       0.0;  ///< over which it changes, as share of the factor's range; of "tow pitch" the period [m]

@@ -70,6 +70,23 @@ double top_evidence(const std::vector<Shape>& shapes) {
   return shapes.empty() ? 0.0 : shapes.front().log_evidence;
 }
 
+/// The free shape over one factor that says more than two names, where there is one. Before the data an
+/// unknown function is as likely as one effect, its part shared by the factors it may be of; two effects are
+/// less likely than one, and their numbers may still bend to any function of a factor both depend on.
+const Shape* one_function_instead(const SearchResult& result, const Scored& best,
+                                  const std::vector<Shape>& shapes, double bayes_factor) {
+  if (best.fit.hypothesis.size() < 2) return nullptr;
+  const auto single =
+      std::ranges::find_if(result.scored, [](const Scored& one) { return one.fit.hypothesis.size() == 1; });
+  const auto of_one = [](const Shape& shape) { return shape.factors == 1; };
+  const auto shape = std::ranges::find_if(shapes, of_one);  // the best: they come in order
+  if (single == result.scored.end() || shape == shapes.end()) return nullptr;
+  const auto factors = static_cast<double>(std::ranges::count_if(shapes, of_one));
+  const double of_shape = shape->log_evidence + single->log_prior - single->log_choice - std::log(factors);
+  const double of_pair = best.fit.log_evidence - result.log_evidence_none + best.log_prior;
+  return of_shape - of_pair > bayes_factor ? &*shape : nullptr;
+}
+
 std::string names(const ForwardModel& model, const Hypothesis& hypothesis) {
   std::vector<std::string> ids;
   for (const std::size_t effect : hypothesis) ids.push_back(model.candidates[effect].id);
@@ -134,6 +151,14 @@ Decision decide(const ForwardModel& model, const SearchResult& result, const Evi
                     "{:.0f} % of the excess).",
                     evidence.gap_shapes.empty() ? "nothing" : evidence.gap_shapes.front().over, shape, name,
                     gain, 100.0 * decision.excess_removed));
+    return decision;
+  }
+  if (const Shape* one = one_function_instead(result, best, evidence.gap_shapes, options.bayes_factor)) {
+    decision.answer = Answer::unknown;
+    decision.reasons.push_back(
+        fmt::format("One unknown function of {} (ln Bayes factor {:.1f}) is more likely than two names at "
+                    "once, {} ({:.1f}).",
+                    one->over, one->log_evidence, name, gain));
     return decision;
   }
   const bool alone = best.probability >= options.probability;

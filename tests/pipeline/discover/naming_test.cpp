@@ -201,3 +201,72 @@ TEST_CASE("a free shape is one of many: it must say more than its choosing costs
   CHECK(answer_with(price - 0.5) == Answer::named_incomplete);
   CHECK(answer_with(price + 0.5 + gain) == Answer::unknown);
 }
+
+TEST_CASE("two names on one factor must say more than one unknown function of it", "[discover][verdict]") {
+  // Nature is a parabola and a cube of x, far above the noise; the library has both.
+  const Line line;
+  ForwardModel model = line.model(normal(0.0, 0.4), false);
+  Candidate cube = model.candidates[0];
+  cube.id = "cube";
+  cube.numbers = {{"cube.amplitude", "", normal(0.0, 0.4)}};
+  model.candidates.push_back(cube);
+  model.predict = [x = line.x](const Trial& trial) -> Eigen::VectorXd {
+    Eigen::VectorXd y = trial.baseline[0] + (trial.baseline[1] * x.array());
+    for (const auto& [effect, values] : trial.effects)
+      y.array() += values[0] * x.array().pow(effect == 0 ? 2.0 : 3.0);
+    return y;
+  };
+  const auto data = measured(line, 0.5, 0.02);
+  const Eigen::VectorXd value = data->value() + (0.8 * line.x.array().cube()).matrix();
+  const SearchResult result =
+      search(model, {.value = value, .covariance = 4e-4 * Eigen::MatrixXd::Identity(12, 12)});
+  REQUIRE(result.best().fit.hypothesis == Hypothesis{0, 1});
+  const double gain = result.best_gain();
+  const auto decision_with = [&](double more, int factors) {
+    Shape shape;
+    shape.over = "x";
+    shape.factors = factors;
+    shape.log_evidence = gain + more;
+    Evidence evidence;
+    evidence.gate_p = 0.0;
+    evidence.gap_shapes.assign(8, shape);
+    return decide(model, result, evidence);
+  };
+  // One effect has 0.2 before the data and so has the function, shared by eight factors; the pair has 0.1.
+  const double price = 3.0 + std::log(8.0) - std::log(2.0);
+  CHECK(decision_with(price - 0.1, 1).answer == Answer::named);
+  CHECK(decision_with(price + 0.1, 1).answer == Answer::unknown);
+  CHECK(decision_with(price + 0.1, 1).reasons.back().find("One unknown function of x") == 0);
+  CHECK(decision_with(price + 0.1, 2).answer == Answer::named);  // of two factors: no rival of two names
+}
+
+TEST_CASE(
+    "an effect is also tried from the middle of the baseline's prior, where the baseline bent far for it",
+    "[discover][search]") {
+  // The level b alone reaches the data at b = 2.5; with the effect the same data lie at b = 0, behind a
+  // ridge.
+  Eigen::VectorXd along(12), across(12);
+  for (Eigen::Index i = 0; i < 12; ++i) {
+    along[i] = i % 2 == 0 ? 1.0 : 0.5;
+    across[i] = i % 2 == 0 ? 0.5 : -1.0;
+  }
+  ForwardModel model;
+  model.baseline = {{"b", "", normal(0.0, 1.0)}};
+  Candidate push;
+  push.id = "push";
+  push.numbers = {{"push.amplitude", "", normal(0.0, 1.0)}};
+  model.candidates = {push};
+  model.predict = [=](const Trial& trial) -> Eigen::VectorXd {
+    const double b = trial.baseline[0];
+    Eigen::VectorXd y = b / 2.5 * along + 0.4 * std::sin(std::numbers::pi * b / 2.5) * across;
+    for (const auto& [effect, values] : trial.effects) y += values[0] * along;
+    return y;
+  };
+  const SearchResult result =
+      search(model, {.value = along, .covariance = 4e-4 * Eigen::MatrixXd::Identity(12, 12)});
+  REQUIRE(result.baseline.z[0] > 2.0);
+  const Scored* push_alone = result.find({0});
+  REQUIRE(push_alone != nullptr);
+  CHECK(push_alone->fit.z[0] == Approx(0.0).margin(0.3));
+  CHECK(push_alone->fit.trial.effects[0].second[0] == Approx(1.0).margin(0.15));
+}
