@@ -204,6 +204,8 @@ discover::CouponQuestion question_of(const Case& a_case, const discover::CouponR
   question.baseline = baseline_of(question.base, spec, problems);
   question.effects = library_of(spec, own_effects, problems);
   question.noise = spec.noise;
+  question.search = spec.search;
+  question.verdict = spec.verdict;
   question.held_out = spec.held_out;
   question.seed = static_cast<std::uint64_t>(spec.seed);
   question.tow_pitch = spec.tow_pitch;

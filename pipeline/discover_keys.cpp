@@ -23,6 +23,16 @@ Key quantity(const char* name, const char* unit, const char* standard, const cha
           .help = help};
 }
 
+Key choice(const char* name, std::vector<std::string> choices, const char* help) {
+  return {.path = fmt::format("discover.{}", name),
+          .type = KeyType::choice,
+          .presence = Presence::defaulted,
+          .default_text = choices.front(),
+          .choices = choices,
+          .stage = Stage::discover,
+          .help = help};
+}
+
 Key whole(const char* name, const char* standard, const char* range, const char* help) {
   return {.path = fmt::format("discover.{}", name),
           .type = KeyType::integer,
@@ -76,6 +86,16 @@ std::vector<Key> discover_keys() {
                "How far the form of a library effect may be off, as share of what it does to ln F; prior."),
       quantity("noise.effect_form_length", "", "0.5", "(0, 100]",
                "Over what share of the range of each factor that error wanders; prior."),
+      choice("search.evidence", {"laplace", "akaike"},
+             "What hypotheses are weighed by; akaike, of the forms as they are, is there to see what "
+             "evidence is "
+             "worth."),
+      whole("search.pairs_of", "4", "[0, 20]", "Of how many single effects, the best, pairs are tried."),
+      quantity("verdict.gate", "%", "1 %", "(0, 1]",
+               "Share of campaigns without a gap in which the gate may open."),
+      quantity("verdict.stability", "%", "80 %", "[0, 1]", "Share of half-samples in which a name must win."),
+      choice("verdict.unknown", {"on", "off"},
+             "Whether a free shape may say that no name will do; off is there to see what that is worth."),
       quantity("held_out", "%", "25 %", "[0, 0.5]", "Share of the conditions that no fit sees."),
       whole("stretches", "8", "[1, 40]",
             "Stretches of slip, even in its logarithm, into which a pull is cut."),
@@ -130,6 +150,17 @@ DiscoverSpec discover_of(const Settings& settings) {
   take("noise.history", spec.noise.history);
   take("noise.effect_form", spec.noise.effect_form);
   take("noise.effect_form_length", spec.noise.effect_form_length);
+  const auto chosen = [&](const char* name, const char* value) {
+    const std::string path = fmt::format("discover.{}", name);
+    return settings.has(path) && settings.is(path, value);
+  };
+  spec.search.akaike = chosen("search.evidence", "akaike");
+  int pairs_of = static_cast<int>(spec.search.pairs_of);
+  take_whole("search.pairs_of", pairs_of);
+  spec.search.pairs_of = static_cast<std::size_t>(pairs_of);
+  take("verdict.gate", spec.verdict.gate);
+  take("verdict.stability", spec.verdict.stability);
+  spec.verdict.unknown = !chosen("verdict.unknown", "off");
   take("held_out", spec.held_out);
   take_whole("stretches", spec.stretches);
   take_whole("faces", spec.faces);

@@ -9,6 +9,7 @@
 #include "pipeline/config_reader.h"
 #include "pipeline/config_schema.h"
 #include "pipeline/discover/noise_wish.h"
+#include "pipeline/discover/options.h"
 
 namespace heddle::pipeline {
 
@@ -19,6 +20,8 @@ struct DiscoverSpec {
   std::map<std::string, std::array<double, 2>> priors;  ///< {mean, standard deviation}
   std::vector<std::string> effects;                     ///< ids to try; empty: the whole library
   discover::NoiseWish noise;
+  discover::SearchOptions search;
+  discover::VerdictOptions verdict;
   double held_out = 0.25;
   int stretches = 8;
   int faces = 2;

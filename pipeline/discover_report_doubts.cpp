@@ -187,6 +187,25 @@ std::string tolerances(const DiscoveryPage& page) {
                       {"Reading, where replicates do not tell", percent(wish.reading)}});
 }
 
+/// Parts of the method that the case switched off or moved: a verdict without them is not the program's usual
+/// one.
+std::string changed_method(const DiscoveryPage& page) {
+  const discover::SearchOptions& search = page.record.question.search;
+  const discover::VerdictOptions& verdict = page.record.question.verdict;
+  const discover::SearchOptions usual_search;
+  const discover::VerdictOptions usual_verdict;
+  std::vector<std::string> texts;
+  if (search.akaike) texts.push_back("Hypotheses are weighed by Akaike's criterion, not by evidence.");
+  if (search.pairs_of != usual_search.pairs_of)
+    texts.push_back(fmt::format("Pairs are tried of the best {} single effects.", search.pairs_of));
+  if (verdict.gate != usual_verdict.gate)
+    texts.push_back(fmt::format("The gate opens in {} of campaigns without a gap.", percent(verdict.gate)));
+  if (verdict.stability != usual_verdict.stability)
+    texts.push_back(fmt::format("A name must win in {} of half-samples.", percent(verdict.stability)));
+  if (!verdict.unknown) texts.push_back("The answer UNKNOWN is switched off.");
+  return texts.empty() ? "" : "<h3>Not the usual method</h3>\n" + list(texts);
+}
+
 std::string notes(const DiscoveryPage& page) {
   return page.record.notes.empty() ? "" : "<h3>Notes of the data</h3>\n" + list(page.record.notes);
 }
@@ -197,7 +216,8 @@ std::string doubts_section(const DiscoveryPage& page) {
   return section("Doubts", verdict_list(caution_verdicts(page)) + look_alike_table(page) +
                                isolability_part(page) + detectable_table(page) +
                                "<div class=\"columns\"><div>\n" + blind_spots(page) + not_tried_table(page) +
-                               "</div><div>\n" + tolerances(page) + notes(page) + "</div></div>\n");
+                               "</div><div>\n" + tolerances(page) + changed_method(page) + notes(page) +
+                               "</div></div>\n");
 }
 
 }  // namespace heddle::pipeline

@@ -237,6 +237,8 @@ StampingDiscovery discover_stamping_in(const Case& a_case, StampingRuns& runs, c
   if (!problems.empty()) throw InputError(std::move(problems));
   record.question.baseline = library.baseline;
   record.question.noise = spec.noise;
+  record.question.search = spec.search;
+  record.question.verdict = spec.verdict;
   record.question.held_out = spec.held_out;
   record.question.seed = static_cast<std::uint64_t>(spec.seed);
 

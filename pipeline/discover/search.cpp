@@ -105,6 +105,16 @@ std::vector<Hypothesis> pairs_to_try(const std::vector<Scored>& singles,
   return {pairs.begin(), pairs.end()};
 }
 
+/// The fit a hypothesis is weighed by.
+MapFit weighed(const ForwardModel& model, const Observations& observations, const MapFit& exact,
+               const SearchOptions& options) {
+  if (!options.akaike) return with_form_error(model, observations, exact);
+  MapFit fit = exact;
+  if (std::isfinite(fit.log_evidence))
+    fit.log_evidence = -0.5 * (fit.chi2 + fit.data->log_determinant()) - static_cast<double>(fit.z.size());
+  return fit;
+}
+
 }  // namespace
 
 const Scored* SearchResult::find(const Hypothesis& hypothesis) const {
@@ -154,7 +164,8 @@ SearchResult search(const ForwardModel& model, const Observations& observations,
   const auto data = std::make_shared<const Whitened>(observations.value, observations.covariance);
   const HypothesisPrior prior(model, options);
   const auto free_baseline = std::ssize(free_numbers(model, {}));
-  result.baseline = map_fit(model, data, {}, Eigen::VectorXd::Zero(free_baseline));
+  result.baseline =
+      weighed(model, observations, map_fit(model, data, {}, Eigen::VectorXd::Zero(free_baseline)), options);
   result.log_evidence_none = result.baseline.log_evidence;
   if (!std::isfinite(result.log_evidence_none)) return result;
   const BesideBaseline beside(result.baseline.jacobian);
@@ -166,7 +177,7 @@ SearchResult search(const ForwardModel& model, const Observations& observations,
   tbb::parallel_for(std::size_t{0}, count, [&](std::size_t effect) {
     signatures[effect] = signatures_of(model, *data, result.baseline, beside, result.gap, effect);
     MapFit exact = best_fit(model, data, {effect}, starts_of(model, result.baseline, signatures[effect]));
-    singles[effect] = {.fit = with_form_error(model, observations, exact),
+    singles[effect] = {.fit = weighed(model, observations, exact, options),
                        .numbers = std::move(exact),
                        .log_prior = prior.of({effect}),
                        .log_choice = prior.choice({effect})};
@@ -192,7 +203,7 @@ SearchResult search(const ForwardModel& model, const Observations& observations,
     tbb::parallel_for(std::size_t{0}, pairs.size(), [&](std::size_t k) {
       const MapFit &first = by_effect[pairs[k][0]], &second = by_effect[pairs[k][1]];
       MapFit exact = map_fit(model, data, pairs[k], joined(result.baseline, first, second));
-      fitted[k] = {.fit = with_form_error(model, observations, exact),
+      fitted[k] = {.fit = weighed(model, observations, exact, options),
                    .numbers = std::move(exact),
                    .log_prior = prior.of(pairs[k]),
                    .log_choice = prior.choice(pairs[k])};

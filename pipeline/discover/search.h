@@ -6,22 +6,10 @@
 #include <vector>
 
 #include "pipeline/discover/map_fit.h"
+#include "pipeline/discover/options.h"
 #include "pipeline/discover/signature.h"
 
 namespace heddle::discover {
-
-/// Probabilities before the data, and how far the search goes.
-struct SearchOptions {
-  double no_effect = 0.5;     ///< prior probability that nothing is missing
-  double one_effect = 0.4;    ///< shared evenly by all ids
-  double two_effects = 0.1;   ///< shared evenly by all pairs
-  double bayes_factor = 3.0;  ///< ln, that each effect more must gain
-  /// And that the second must gain as share of what the first does: beside an effect that is plain, what its
-  /// form is off by looks like another.
-  double second = 0.005;
-  std::size_t pairs_of = 4;  ///< single effects whose pairs are tried, the best by evidence
-  std::size_t partners = 6;  ///< of each, the strongest by their score on what the first leaves over
-};
 
 /// One hypothesis that was fitted, with its probability among all that were.
 struct Scored {

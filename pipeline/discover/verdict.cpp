@@ -142,7 +142,7 @@ Decision decide(const ForwardModel& model, const SearchResult& result, const Evi
   const double price = std::log(static_cast<double>(std::max<std::size_t>(evidence.gap_shapes.size(), 1)));
   const bool says_more = shape - gain > options.bayes_factor + price;
   if (gain <= options.bayes_factor ||
-      (something_left && says_more &&
+      (options.unknown && something_left && says_more &&
        (captured < options.captured || decision.excess_removed < options.excess))) {
     decision.answer = Answer::unknown;
     decision.reasons.push_back(
@@ -153,7 +153,8 @@ Decision decide(const ForwardModel& model, const SearchResult& result, const Evi
                     gain, 100.0 * decision.excess_removed));
     return decision;
   }
-  if (const Shape* one = one_function_instead(result, best, evidence.gap_shapes, options.bayes_factor)) {
+  const Shape* one = one_function_instead(result, best, evidence.gap_shapes, options.bayes_factor);
+  if (options.unknown && one != nullptr) {
     decision.answer = Answer::unknown;
     decision.reasons.push_back(
         fmt::format("One unknown function of {} (ln Bayes factor {:.1f}) is more likely than two names at "

@@ -3,6 +3,7 @@
 #include <string>
 #include <vector>
 
+#include "pipeline/discover/options.h"
 #include "pipeline/discover/search.h"
 #include "pipeline/discover/shape.h"
 
@@ -11,17 +12,6 @@ namespace heddle::discover {
 /// The five answers. A workflow that cannot say "nothing" or "something else" cannot be trusted.
 enum class Answer { no_gap, named, one_of, named_incomplete, unknown };
 const char* in_words(Answer answer);  ///< "NO_GAP", "NAMED", ...
-
-struct VerdictOptions {
-  double gate = 0.01;         ///< family-wise p below which there is a gap
-  double probability = 0.9;   ///< of the one name
-  double set = 0.95;          ///< probability that the candidate set holds
-  double bayes_factor = 3.0;  ///< ln
-  double lack_of_fit = 0.01;  ///< p below which something is left over
-  double excess = 0.8;        ///< share of the excess chi-square that a name must remove
-  double captured = 0.75;     ///< share of a free shape's ln Bayes factor that a name must reach
-  double stability = 0.8;     ///< share of half-samples in which it wins
-};
 
 /// What is known when the verdict is passed.
 struct Evidence {

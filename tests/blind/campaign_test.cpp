@@ -107,6 +107,19 @@ TEST_CASE("campaigns have the cases that the protocol asks for, under numbers th
   }
 }
 
+TEST_CASE("each part left out meets the worlds of the whole method, with its draws", "[blind]") {
+  const auto cases = plan("ablations", {});
+  const std::size_t worlds = cases.size() / ablations().size();
+  CHECK(cases.size() == worlds * ablations().size());
+  for (std::size_t k = 0; k < cases.size(); ++k) {
+    const PlannedCase& planned = cases[k];
+    CHECK(planned.ablation == k / worlds);
+    CHECK(planned.first == (planned.ablation == 0 ? 0 : static_cast<int>(k % worlds) + 1));
+    CHECK(planned.spec.kind == cases[k % worlds].spec.kind);
+    CHECK(planned.spec.case_number == cases[k % worlds].spec.case_number);
+  }
+}
+
 TEST_CASE("acceptance seeds are the first digits of the two trees", "[blind]") {
   CHECK(acceptance_seed("0123456789abcdef", "fedcba9876543210") == 0x01234567fedcba98ULL);
   CHECK_THROWS_AS(acceptance_seed("none", "fedcba9876543210"), std::invalid_argument);

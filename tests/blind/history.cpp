@@ -31,10 +31,15 @@ std::string follow_up_name(FollowUp follow_up) {
   return follow_up == FollowUp::random ? "three random" : "none";
 }
 
+std::string campaign_name(const Manifest& m, const Setting& setting) {
+  if (setting.ablation == 0) return m.campaign;
+  return fmt::format("{} without {}", m.campaign, ablations().at(setting.ablation).without);
+}
+
 Columns identity(const Manifest& m, const Setting& setting, const std::string& date) {
   return {{"date", date},
           {"commit", m.commit},
-          {"campaign", m.campaign},
+          {"campaign", campaign_name(m, setting)},
           {"seed", std::to_string(m.selection.seed)},
           {"discover_tree", m.discover_tree.substr(0, 8)},
           {"friction_tree", m.friction_tree.substr(0, 8)},

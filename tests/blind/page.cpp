@@ -15,9 +15,12 @@ std::vector<std::string> parts(const Setting& s) {
   const char* more = s.follow_up == FollowUp::proposed ? "three proposed cells more"
                      : s.follow_up == FollowUp::random ? "three random cells more"
                                                        : "no cells more";
-  return {std::string(blindgen::name_of(s.design)), fmt::format("{:g} % a sample", 100.0 * s.sample_scatter),
-          fmt::format("{:g} % a day", 100.0 * s.day_scatter), fmt::format("amplitude {:g}", s.amplitude),
-          more};
+  return {std::string(blindgen::name_of(s.design)),
+          fmt::format("{:g} % a sample", 100.0 * s.sample_scatter),
+          fmt::format("{:g} % a day", 100.0 * s.day_scatter),
+          fmt::format("amplitude {:g}", s.amplitude),
+          more,
+          fmt::format("without {}", ablations().at(s.ablation).without)};
 }
 
 /// What tells a setting from the others, or all of it if there are no others.
@@ -169,16 +172,18 @@ std::string failures(const std::vector<Judged>& cases) {
   return text;
 }
 
-/// Settings side by side: the figures that a design, the scatter or the amplitude moves.
+/// Settings side by side: the figures that a design, the scatter, the amplitude or a part left out moves.
 std::string comparison(const Settings& settings) {
   std::string text =
-      "| setting | top-1 | candidate set holds it | single names right | nulls named | median shrink |\n"
-      "|---|---|---|---|---|---|\n";
+      "| setting | top-1 | candidate set holds it | single names right | nulls named | two effects exact | "
+      "outside "
+      "named | median shrink | calibration error |\n|---|---|---|---|---|---|---|---|---|\n";
   for (const auto& [setting, cases] : settings) {
     const Scores s = score(cases);
-    text +=
-        fmt::format("| {} | {} | {} | {} | {} | {} |\n", title(setting, settings), cell(s.top1),
-                    cell(s.candidate_set), cell(s.precision), cell(s.null_named), percent(median(s.shrinks)));
+    text += fmt::format("| {} | {} | {} | {} | {} | {} | {} | {} | {:.3f} |\n", title(setting, settings),
+                        cell(s.top1), cell(s.candidate_set), cell(s.precision), cell(s.null_named),
+                        cell(s.pair_exact), cell(s.outside_clean), percent(median(s.shrinks)),
+                        calibration_error(s.forecasts));
   }
   return text;
 }
@@ -253,7 +258,8 @@ constexpr const char* preface =
     "names is "
     "exactly the truth, with or without a remainder (`*` = NAMED_INCOMPLETE). Top-1 also takes the first of "
     "a ONE_OF, "
-    "and an exact set the most probable set of one, never of an UNKNOWN. For a null, a set of names is as bad as a name. A fault of the rig is called "
+    "and an exact set the most probable set of one, never of an UNKNOWN. For a null, a set of names is as "
+    "bad as a name. A fault of the rig is called "
     "physics if a name "
     "is given that is friction's, or a set without any fault of the rig. Intervals are Wilson's at 95 %; "
     "rates pass by "
@@ -261,13 +267,14 @@ constexpr const char* preface =
     "machine that "
     "runs several cases at once.\n\n"
     "Not measured: shapes of unknown effects against the truth, shrink against an oracle's fit, recovery of "
-    "parameters (the forms differ by design), ablations.\n\n";
+    "parameters (the forms differ by design).\n\n";
 
 }  // namespace
 
 Setting setting_of(const PlannedCase& planned) {
   const blindgen::Spec& spec = planned.spec;
-  return {spec.design, spec.sample_scatter, spec.day_scatter, spec.amplitude, planned.follow_up};
+  return {spec.design,    spec.sample_scatter, spec.day_scatter,
+          spec.amplitude, planned.follow_up,   planned.ablation};
 }
 
 Settings by_setting(const std::vector<Judged>& cases) {

@@ -20,6 +20,7 @@ struct Setting {
   blindgen::Design design{};
   double sample_scatter = 0, day_scatter = 0, amplitude = 0;
   FollowUp follow_up = FollowUp::none;
+  std::size_t ablation = 0;
   auto operator<=>(const Setting&) const = default;
 };
 

@@ -29,8 +29,8 @@ void add(std::vector<Spec>& specs, const Spec& common, std::initializer_list<Cou
 
 std::vector<Spec> acceptance(Spec common) {
   std::vector<Spec> specs;
-  // 126 outside: none of 60 would still leave an upper bound of 6.02 %, above the 6 % that must hold. 120 pairs:
-  // at 60 the interval is 23 points wide.
+  // 126 outside: none of 60 would still leave an upper bound of 6.02 %, above the 6 % that must hold. 120
+  // pairs: at 60 the interval is 23 points wide.
   add(specs, common,
       {{Kind::single, 330},
        {Kind::null, 180},
@@ -93,6 +93,14 @@ std::vector<Spec> proposals(Spec common) {
   return specs;
 }
 
+/// A mix of every kind but the rig's faults, answered whole and once without each part of the method.
+std::vector<Spec> of_ablations(Spec common) {
+  std::vector<Spec> specs;
+  add(specs, common,
+      {{Kind::single, 60}, {Kind::null, 24}, {Kind::null_exact, 6}, {Kind::pair, 24}, {Kind::outside, 28}});
+  return specs;
+}
+
 std::vector<Spec> smoke(Spec common) {
   std::vector<Spec> specs;
   add(specs, common,
@@ -120,6 +128,7 @@ const std::vector<Entry>& entries() {
       {{"proposals",
         "100 confusable singles on Table 2, then with three proposed and with three random cells"},
        proposals},
+      {{"ablations", "142 cases, answered whole and without each part of the method"}, of_ablations},
       {{"smoke", "12 cases, a few of each kind"}, smoke}};
   return all;
 }
@@ -129,9 +138,23 @@ void add_follow_ups(std::vector<PlannedCase>& cases) {
   const std::vector<PlannedCase> first = cases;
   for (const FollowUp follow_up : {FollowUp::proposed, FollowUp::random}) {
     for (const PlannedCase& planned : first) {
-      cases.push_back({static_cast<int>(cases.size()) + 1, planned.spec, follow_up, planned.number});
+      cases.push_back({.number = static_cast<int>(cases.size()) + 1,
+                       .spec = planned.spec,
+                       .follow_up = follow_up,
+                       .first = planned.number});
     }
   }
+}
+
+/// Each case again without each part of the method.
+void add_ablations(std::vector<PlannedCase>& cases) {
+  const std::vector<PlannedCase> first = cases;
+  for (std::size_t part = 1; part < ablations().size(); ++part)
+    for (const PlannedCase& planned : first)
+      cases.push_back({.number = static_cast<int>(cases.size()) + 1,
+                       .spec = planned.spec,
+                       .ablation = part,
+                       .first = planned.number});
 }
 
 std::uint64_t first_digits(std::string_view tree) {
@@ -145,6 +168,22 @@ std::uint64_t first_digits(std::string_view tree) {
 }
 
 }  // namespace
+
+const std::vector<Ablation>& ablations() {
+  static const std::vector<Ablation> all{
+      {"nothing", {}},
+      {"scatter from day to day", {"discover.noise.day=0 %"}},
+      {"errors of the law's curve and of unevenness",
+       {"discover.noise.form=0 %", "discover.noise.history=0 %"}},
+      {"errors of an effect's form", {"discover.noise.effect_form=0 %"}},
+      {"these, and Akaike's criterion for evidence",
+       {"discover.noise.effect_form=0 %", "discover.search.evidence=akaike"}},
+      {"the gate", {"discover.verdict.gate=100 %"}},
+      {"half-samples", {"discover.verdict.stability=0 %"}},
+      {"the answer UNKNOWN", {"discover.verdict.unknown=off"}},
+      {"pairs but those of the best single effect", {"discover.search.pairs_of=1"}}};
+  return all;
+}
 
 const std::vector<CampaignInfo>& campaigns() {
   static const std::vector<CampaignInfo> infos = [] {
@@ -165,12 +204,13 @@ std::vector<PlannedCase> plan(std::string_view campaign, const Selection& select
   for (const Spec& spec : specs) {
     const bool wanted =
         selection.kinds.empty() || std::ranges::find(selection.kinds, spec.kind) != selection.kinds.end();
-    if (wanted) cases.push_back({static_cast<int>(cases.size()) + 1, spec});
+    if (wanted) cases.push_back({.number = static_cast<int>(cases.size()) + 1, .spec = spec});
   }
   if (selection.limit > 0 && selection.limit < static_cast<int>(cases.size())) {
     cases.resize(static_cast<std::size_t>(selection.limit));
   }
   if (campaign == "proposals") add_follow_ups(cases);
+  if (campaign == "ablations") add_ablations(cases);
   return cases;
 }
 

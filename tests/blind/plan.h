@@ -18,12 +18,22 @@ enum class FollowUp {
   random     ///< drawn from the levels of Table 2
 };
 
+/// A part of the method that `discover` is asked to do without, to see what the part is worth.
+struct Ablation {
+  std::string_view without;            ///< in words
+  std::vector<std::string_view> sets;  ///< settings, as after --set
+};
+
+/// The first leaves nothing out.
+const std::vector<Ablation>& ablations();
+
 /// A case under an opaque number. What is hidden in it follows from the specification alone.
 struct PlannedCase {
   int number = 0;  ///< from 1, in an order that says nothing about the kind
   blindgen::Spec spec;
   FollowUp follow_up = FollowUp::none;
-  int first = 0;  ///< of a follow-up: number of the case it follows
+  std::size_t ablation = 0;  ///< in ablations()
+  int first = 0;             ///< of a follow-up or an ablation: number of the case with the same world
 };
 
 /// What decides a campaign besides its name. Stored beside the reports, so that the scorer can plan it again.
@@ -38,10 +48,10 @@ struct CampaignInfo {
   std::string_view purpose;
 };
 
-/// development, acceptance, designs, cv10, amplitudes, proposals, smoke.
+/// development, acceptance, designs, cv10, amplitudes, proposals, ablations, smoke.
 const std::vector<CampaignInfo>& campaigns();
 
-/// The cases of a campaign, shuffled by its seed; follow-ups behind the case they follow.
+/// The cases of a campaign, shuffled by its seed; follow-ups and ablations behind the case they follow.
 /// @throws std::invalid_argument  no campaign of that name
 std::vector<PlannedCase> plan(std::string_view campaign, const Selection& selection);
 

@@ -56,15 +56,21 @@ Job start(const Store& store, const PlannedCase& planned, const RunOptions& opti
   record.number = planned.number;
   record.rows = static_cast<int>(data.rows.size());
   record.data_sha256 = sha256(table);
-  const std::vector<std::string> command{options.program.string(),
-                                         "discover",
-                                         options.config.string(),
-                                         "--data",
-                                         "data.csv",
-                                         "-o",
-                                         "out",
-                                         "--seed",
-                                         std::to_string(planned.number)};
+  // What is left out must be all that differs: draws are those of the whole method.
+  const int seed = planned.ablation == 0 ? planned.number : planned.first;
+  std::vector<std::string> command{options.program.string(),
+                                   "discover",
+                                   options.config.string(),
+                                   "--data",
+                                   "data.csv",
+                                   "-o",
+                                   "out",
+                                   "--seed",
+                                   std::to_string(seed)};
+  for (const std::string_view set : ablations().at(planned.ablation).sets) {
+    command.emplace_back("--set");
+    command.emplace_back(set);
+  }
   const std::vector<std::pair<std::string, std::string>> environment{
       {"HEDDLE_CACHE", (store.folder() / "cache").string()}, {"OPENBLAS_NUM_THREADS", "1"}};
   return {record, Child(command, folder, environment, store.folder_of(planned.number) / "discover.log"),
