@@ -6,7 +6,6 @@
 #include <numbers>
 
 #include <fmt/format.h>
-#include <tbb/global_control.h>
 
 #include "pipeline/cache.h"
 #include "pipeline/case.h"
@@ -24,6 +23,7 @@
 #include "pipeline/stage_store.h"
 #include "pipeline/stages.h"
 #include "pipeline/stamping_stage.h"
+#include "pipeline/threads.h"
 
 namespace heddle::pipeline {
 
@@ -43,11 +43,6 @@ struct Findings {
   std::optional<macroscale::StampingResult> stamping;
   std::optional<macroscale::GridError> grid_error;
 };
-
-std::unique_ptr<tbb::global_control> limit_threads(int threads) {
-  if (threads <= 0) return nullptr;
-  return std::make_unique<tbb::global_control>(tbb::global_control::max_allowed_parallelism, threads);
-}
 
 std::vector<double> contact_pressures() {
   std::vector<double> p;

@@ -17,6 +17,7 @@
 #include "pipeline/discover_stamping.h"
 #include "pipeline/run_folder.h"
 #include "pipeline/stages.h"
+#include "pipeline/threads.h"
 
 namespace heddle::pipeline {
 
@@ -341,6 +342,7 @@ Settings discovered_settings(const Case& a_case, const DiscoveryRecord& record) 
 }
 
 int discover_case(const DiscoverOptions& options) {
+  const auto threads = limit_threads(options.run.threads);
   if (!options.design.empty()) return plan_coupons(options);
   const std::string table = read_text_file(options.data);
   if (discover::is_stamping_table(table)) return discover_stamping(options);

@@ -1,7 +1,6 @@
 #include "pipeline/discover_stamping.h"
 
 #include <fmt/format.h>
-#include <tbb/global_control.h>
 
 #include <Eigen/Cholesky>
 #include <algorithm>
@@ -313,10 +312,6 @@ int discover_stamping(const DiscoverOptions& options) {
   Case a_case = read_stamping_case(options.run);
   if (!a_case.discover) a_case.discover.emplace();
   if (options.seed) a_case.discover->seed = *options.seed;
-  std::unique_ptr<tbb::global_control> threads;
-  if (options.run.threads > 0)
-    threads = std::make_unique<tbb::global_control>(tbb::global_control::max_allowed_parallelism,
-                                                    options.run.threads);
   std::vector<std::string> log;
   const Cache cache(options.run.cache, [&](const std::string& line) { log.push_back(line); });
   const InterruptGuard guard;

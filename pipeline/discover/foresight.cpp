@@ -1,5 +1,7 @@
 #include "pipeline/discover/foresight.h"
 
+#include <tbb/parallel_for.h>
+
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -13,6 +15,8 @@ namespace {
 
 constexpr std::size_t folds = 5;
 constexpr std::array shares{0.4, 0.8};  ///< of Observations::form
+/// A fold starts where the whole fit ended: few steps tell what it foretells.
+constexpr FitOptions of_a_fold{.iterations_max = 4, .tolerance = 0.05};
 
 }  // namespace
 
@@ -35,7 +39,7 @@ double left_out_error(const ForwardModel& model, const MapFit& fit, const std::v
     const MapFit without = map_fit(part,
                                    std::make_shared<const Whitened>(Eigen::VectorXd(value(rows)),
                                                                     Eigen::MatrixXd(covariance(rows, rows))),
-                                   fit.hypothesis, fit.z);
+                                   fit.hypothesis, fit.z, of_a_fold);
     const Eigen::VectorXd predicted = model.predict(without.trial)(unseen);
     sum += (predicted - Eigen::VectorXd(value(unseen))).squaredNorm();
   }
@@ -51,19 +55,23 @@ MapFit best_in_foresight(const ForwardModel& model, const Observations& observat
   for (const double share : shares) weights.push_back(noise + share * share * form);
   const double points = static_cast<double>(noise.rows()) / static_cast<double>(cells.size());
   weights.emplace_back(points * Eigen::MatrixXd(noise.diagonal().asDiagonal()));
-  MapFit best = exact;
-  double error = left_out_error(model, exact, cells, seed);
-  for (const Eigen::MatrixXd& weight : weights) {
-    const MapFit fit = map_fit(model, std::make_shared<const Whitened>(observations.value, weight),
-                               exact.hypothesis, exact.z);
-    if (!std::isfinite(fit.log_evidence)) continue;
-    const double with = left_out_error(model, fit, cells, seed);
-    if (with < error || !std::isfinite(error)) {
-      error = with;
-      best = fit;
-    }
-  }
-  return best;
+  struct Tried {
+    MapFit fit;
+    double error = 0.0;
+  };
+  std::vector<Tried> tried(1 + weights.size());
+  tbb::parallel_for(std::size_t{0}, tried.size(), [&](std::size_t k) {
+    MapFit fit = exact;
+    if (k > 0)
+      fit = map_fit(model, std::make_shared<const Whitened>(observations.value, weights[k - 1]),
+                    exact.hypothesis, exact.z);
+    const double error = std::isfinite(fit.log_evidence) ? left_out_error(model, fit, cells, seed) : NAN;
+    tried[k] = {std::move(fit), error};
+  });
+  const Tried* best = &tried.front();
+  for (const Tried& one : tried)
+    if (one.error < best->error || (std::isfinite(one.error) && !std::isfinite(best->error))) best = &one;
+  return best->fit;
 }
 
 }  // namespace heddle::discover
