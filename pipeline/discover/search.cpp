@@ -21,12 +21,11 @@ class HypothesisPrior {
     ids_ = static_cast<double>(ids.size());
   }
   double of(const Hypothesis& hypothesis) const {
-    double log_prior = hypothesis.empty() ? std::log(options_.no_effect)
-                       : hypothesis.size() == 1
-                           ? std::log(options_.one_effect / ids_)
-                           : std::log(options_.two_effects / (0.5 * ids_ * (ids_ - 1.0)));
-    return log_prior + choice(hypothesis);
+    if (hypothesis.empty()) return std::log(options_.no_effect);
+    return (hypothesis.size() == 1 ? of_one() : of_two()) + choice(hypothesis);
   }
+  double of_one() const { return std::log(options_.one_effect / ids_); }
+  double of_two() const { return std::log(options_.two_effects / std::max(0.5 * ids_ * (ids_ - 1.0), 1.0)); }
   double choice(const Hypothesis& hypothesis) const {
     double log_weight = 0.0;
     for (const std::size_t effect : hypothesis) log_weight += model_.candidates[effect].log_weight;
@@ -163,6 +162,8 @@ SearchResult search(const ForwardModel& model, const Observations& observations,
   SearchResult result;
   const auto data = std::make_shared<const Whitened>(observations.value, observations.covariance);
   const HypothesisPrior prior(model, options);
+  result.log_prior_one = prior.of_one();
+  result.log_prior_two = prior.of_two();
   const auto free_baseline = std::ssize(free_numbers(model, {}));
   result.baseline =
       weighed(model, observations, map_fit(model, data, {}, Eigen::VectorXd::Zero(free_baseline)), options);

@@ -28,6 +28,7 @@ struct SearchResult {
   std::vector<Signature> signatures;  ///< strongest of each candidate, in their order
   std::vector<Scored> scored;         ///< best first; the empty hypothesis is among them
   double log_evidence_none = 0.0;
+  double log_prior_one = 0.0, log_prior_two = 0.0;  ///< of one id, and of one pair of ids
 
   const Scored& best() const { return scored.front(); }
   const Scored* find(const Hypothesis& hypothesis) const;

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <limits>
 #include <set>
 
 namespace heddle::discover {
@@ -70,21 +71,23 @@ double top_evidence(const std::vector<Shape>& shapes) {
   return shapes.empty() ? 0.0 : shapes.front().log_evidence;
 }
 
-/// The free shape over one factor that says more than two names, where there is one. Before the data an
-/// unknown function is as likely as one effect, its part shared by the factors it may be of; two effects are
-/// less likely than one, and their numbers may still bend to any function of a factor both depend on.
-const Shape* one_function_instead(const SearchResult& result, const Scored& best,
-                                  const std::vector<Shape>& shapes, double bayes_factor) {
-  if (best.fit.hypothesis.size() < 2) return nullptr;
-  const auto single =
-      std::ranges::find_if(result.scored, [](const Scored& one) { return one.fit.hypothesis.size() == 1; });
-  const auto of_one = [](const Shape& shape) { return shape.factors == 1; };
-  const auto shape = std::ranges::find_if(shapes, of_one);  // the best: they come in order
-  if (single == result.scored.end() || shape == shapes.end()) return nullptr;
-  const auto factors = static_cast<double>(std::ranges::count_if(shapes, of_one));
-  const double of_shape = shape->log_evidence + single->log_prior - single->log_choice - std::log(factors);
-  const double of_pair = best.fit.log_evidence - result.log_evidence_none + best.log_prior;
-  return of_shape - of_pair > bayes_factor ? &*shape : nullptr;
+/// A free shape and its ln odds against none. Before the data an unknown function of one factor is as likely
+/// as one effect, one of two factors as two effects; those of each kind share that.
+struct FreeShape {
+  const Shape* shape = nullptr;
+  double log_odds = -std::numeric_limits<double>::infinity();
+};
+
+FreeShape most_likely(const std::vector<Shape>& shapes, const SearchResult& result, int factors_max) {
+  FreeShape best;
+  for (const Shape& shape : shapes) {
+    if (shape.factors > factors_max) continue;
+    const auto alike = static_cast<double>(std::ranges::count(shapes, shape.factors, &Shape::factors));
+    const double log_prior = shape.factors == 1 ? result.log_prior_one : result.log_prior_two;
+    const double log_odds = shape.log_evidence + log_prior - std::log(alike);
+    if (log_odds > best.log_odds) best = {&shape, log_odds};
+  }
+  return best;
 }
 
 std::string names(const ForwardModel& model, const Hypothesis& hypothesis) {
@@ -136,30 +139,31 @@ Decision decide(const ForwardModel& model, const SearchResult& result, const Evi
 
   const double rest = top_evidence(evidence.rest_shapes);
   const bool something_left = decision.lack_of_fit_p < options.lack_of_fit || rest > options.bayes_factor;
-  // What a free shape says of the gap is the measure of what a name may miss; a shape is the best of many,
-  // and pays for it.
+  // What a free shape says of the gap is the measure of what a name may miss.
   const double captured = shape > options.bayes_factor ? gain / shape : 1.0;
-  const double price = std::log(static_cast<double>(std::max<std::size_t>(evidence.gap_shapes.size(), 1)));
-  const bool says_more = shape - gain > options.bayes_factor + price;
+  const double log_odds =
+      gain + (best.fit.hypothesis.size() == 1 ? result.log_prior_one : result.log_prior_two);
+  const FreeShape any = most_likely(evidence.gap_shapes, result, 2);
+  const bool says_more = any.log_odds - log_odds > options.bayes_factor;
   if (gain <= options.bayes_factor ||
       (options.unknown && something_left && says_more &&
        (captured < options.captured || decision.excess_removed < options.excess))) {
     decision.answer = Answer::unknown;
+    const Shape& said = says_more ? *any.shape : evidence.gap_shapes.front();
     decision.reasons.push_back(
         fmt::format("A smooth gap over {} (ln Bayes factor {:.1f}) says more than the best name, {} ({:.1f}, "
-                    "which removes "
-                    "{:.0f} % of the excess).",
-                    evidence.gap_shapes.empty() ? "nothing" : evidence.gap_shapes.front().over, shape, name,
-                    gain, 100.0 * decision.excess_removed));
+                    "which removes {:.0f} % of the excess).",
+                    said.over, said.log_evidence, name, gain, 100.0 * decision.excess_removed));
     return decision;
   }
-  const Shape* one = one_function_instead(result, best, evidence.gap_shapes, options.bayes_factor);
-  if (options.unknown && one != nullptr) {
+  // The numbers of two effects bend to any function of a factor both depend on: the pair must be likelier.
+  const FreeShape one = most_likely(evidence.gap_shapes, result, 1);
+  if (options.unknown && best.fit.hypothesis.size() == 2 && one.log_odds - log_odds > options.bayes_factor) {
     decision.answer = Answer::unknown;
     decision.reasons.push_back(
         fmt::format("One unknown function of {} (ln Bayes factor {:.1f}) is more likely than two names at "
                     "once, {} ({:.1f}).",
-                    one->over, one->log_evidence, name, gain));
+                    one.shape->over, one.shape->log_evidence, name, gain));
     return decision;
   }
   const bool alone = best.probability >= options.probability;

@@ -83,7 +83,7 @@ TEST_CASE("campaigns have the cases that the protocol asks for, under numbers th
     place[planned.spec.kind] += planned.number;
   }
   using enum blindgen::Kind;
-  CHECK(kinds[single] == 330);
+  CHECK(kinds[single] == 660);
   CHECK(kinds[null] + kinds[null_exact] == 240);
   CHECK(kinds[pair] == 120);
   CHECK(kinds[outside] >= 60);

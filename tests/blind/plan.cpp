@@ -32,7 +32,7 @@ std::vector<Spec> acceptance(Spec common) {
   // 126 outside: none of 60 would still leave an upper bound of 6.02 %, above the 6 % that must hold. 120
   // pairs: at 60 the interval is 23 points wide.
   add(specs, common,
-      {{Kind::single, 330},
+      {{Kind::single, 660},
        {Kind::null, 180},
        {Kind::null_exact, 60},
        {Kind::pair, 120},
@@ -121,7 +121,7 @@ struct Entry {
 const std::vector<Entry>& entries() {
   static const std::vector<Entry> all{
       {{"development", "65 cases to work with, seeds 1 to 999"}, development},
-      {{"acceptance", "876 cases on 48 crossed cells, seed from the git trees"}, acceptance},
+      {{"acceptance", "1206 cases on 48 crossed cells, seed from the git trees"}, acceptance},
       {{"designs", "150 singles and 60 nulls on each of the three other designs"}, designs},
       {{"cv10", "330 singles and 60 nulls at 10 % scatter from sample to sample"}, cv10},
       {{"amplitudes", "60 singles at 0.3, 0.5, 0.75, 1, 1.5 and 2 times the size"}, amplitudes},

@@ -186,9 +186,10 @@ TEST_CASE("a free shape is one of many: it must say more than its choosing costs
   const double gain = result.best_gain();
   REQUIRE(gain > 3.0);
   REQUIRE(gain < 12.0);
-  const auto answer_with = [&](double more) {
+  const auto answer_with = [&](double more, int factors) {
     Shape shape;
     shape.over = "x";
+    shape.factors = factors;
     shape.log_evidence = gain + more;
     Evidence evidence;
     evidence.gate_p = 0.0;
@@ -198,8 +199,11 @@ TEST_CASE("a free shape is one of many: it must say more than its choosing costs
     return decide(model, result, evidence).answer;
   };
   const double price = 3.0 + std::log(20.0);
-  CHECK(answer_with(price - 0.5) == Answer::named_incomplete);
-  CHECK(answer_with(price + 0.5 + gain) == Answer::unknown);
+  CHECK(answer_with(price - 0.5, 1) == Answer::named_incomplete);
+  CHECK(answer_with(price + 0.5, 1) == Answer::unknown);
+  // A function of two factors is as likely as two effects: 0.1 before the data, where one has 0.4.
+  CHECK(answer_with(price + std::log(4.0) - 0.1, 2) == Answer::named_incomplete);
+  CHECK(answer_with(price + std::log(4.0) + 0.1, 2) == Answer::unknown);
 }
 
 TEST_CASE("two names on one factor must say more than one unknown function of it", "[discover][verdict]") {
