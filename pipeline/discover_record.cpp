@@ -77,13 +77,27 @@ ordered_json effects_json(const CouponFindings& found) {
   return effects;
 }
 
+/// "a+b", "none"
+std::string joined_ids(const CouponFindings& found, const discover::Hypothesis& hypothesis) {
+  std::vector<std::string> ids;
+  for (const std::size_t effect : hypothesis) ids.push_back(found.forward.candidates[effect].id);
+  return ids.empty() ? "none" : fmt::format("{}", fmt::join(ids, "+"));
+}
+
+ordered_json other_priors_json(const CouponFindings& found) {
+  ordered_json list = ordered_json::array();
+  for (const discover::UnderPrior& under : found.evidence.priors)
+    list.push_back({{"width", under.width},
+                    {"best", joined_ids(found, under.best)},
+                    {"probability", under.probability}});
+  return list;
+}
+
 ordered_json ranking_json(const CouponFindings& found) {
   ordered_json ranking = ordered_json::array();
   for (const Scored& one : found.result.scored) {
     if (ranking.size() == 12) break;
-    ordered_json ids = ordered_json::array();
-    for (const std::size_t effect : one.fit.hypothesis) ids.push_back(found.forward.candidates[effect].id);
-    ranking.push_back({{"id", ids.empty() ? "none" : fmt::format("{}", fmt::join(ids, "+"))},
+    ranking.push_back({{"id", joined_ids(found, one.fit.hypothesis)},
                        {"probability", one.probability},
                        {"log_bayes_factor", one.fit.log_evidence - found.result.log_evidence_none},
                        {"chi2", one.fit.chi2}});
@@ -138,6 +152,7 @@ std::string discovery_json(const DiscoveryRecord& record) {
                   {"from", found.gate_from},
                   {"p_value", found.evidence.gate_p},
                   {"stability", found.evidence.stability},
+                  {"other_priors", other_priors_json(found)},
                   {"lack_of_fit_p", found.decision.lack_of_fit_p},
                   {"excess_removed", found.decision.excess_removed}};
   root["location"] = ordered_json::array();

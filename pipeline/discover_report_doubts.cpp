@@ -63,6 +63,15 @@ std::vector<Verdict> caution_verdicts(const DiscoveryPage& page) {
            "The best explanation stays the best in {:.0f} % of random halves of the conditions ({:.0f} % "
            "are asked of a name).",
            100.0 * found.evidence.stability, 100.0 * wanted)});
+  for (const discover::UnderPrior& under : found.evidence.priors) {
+    const std::string best =
+        under.best.empty() ? "no effect" : in_words(found.forward, under.best);
+    const bool same = best == in_words(found.forward, found.decision.named);
+    verdicts.push_back(
+        {same ? Tone::holds : Tone::attention,
+         fmt::format("Were the priors of the effects {:g} times as wide, {}: {} ({:.2f}).", under.width,
+                     same ? "the same would be best" : "another would be best", best, under.probability)});
+  }
   const bool fits = found.decision.lack_of_fit_p >= page.record.question.verdict.lack_of_fit;
   verdicts.push_back(
       {fits ? Tone::holds : Tone::attention,

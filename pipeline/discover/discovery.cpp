@@ -209,6 +209,7 @@ void judge(CouponFindings& findings, const Observations& observations, const Cou
     findings.evidence.rest_shapes = shapes_of(findings.training, *best, question.tow_pitch);
     findings.evidence.stability =
         stability_of(findings.result, findings.training, seed_of(question.seed, Draw::stability));
+    findings.evidence.priors = under_other_priors(findings.result);
   }
   findings.decision = decide(findings.forward, findings.result, findings.evidence, question.verdict);
   if (Scored* named = findings.result.find(findings.decision.named);

@@ -2,6 +2,7 @@
 
 #include <Eigen/Cholesky>
 #include <algorithm>
+#include <cmath>
 #include <numeric>
 
 #include "pipeline/discover/random.h"
@@ -31,7 +32,41 @@ double log_evidence(const Linear& linear, const std::vector<Eigen::Index>& rows)
          root.matrixLLT().diagonal().array().log().sum() + linear.log_prior;
 }
 
+/// By how much ln evidence changes where the priors of a hypothesis' effects are `width` times as wide:
+/// r + J z with z of another standard deviation, all whitened.
+double change_of_evidence(const MapFit& fit, Eigen::Index of_baseline, double width) {
+  const Eigen::VectorXd residual = fit.residual - fit.jacobian * fit.z;
+  const auto marginal = [&](double scale) {
+    Eigen::MatrixXd slopes = fit.jacobian;
+    slopes.rightCols(slopes.cols() - of_baseline) *= scale;
+    const Eigen::LLT<Eigen::MatrixXd> curvature(slopes.transpose() * slopes +
+                                                Eigen::MatrixXd::Identity(slopes.cols(), slopes.cols()));
+    const Eigen::VectorXd along = slopes.transpose() * residual;
+    return 0.5 * along.dot(curvature.solve(along)) - curvature.matrixLLT().diagonal().array().log().sum();
+  };
+  return marginal(width) - marginal(1.0);
+}
+
 }  // namespace
+
+std::vector<UnderPrior> under_other_priors(const SearchResult& result) {
+  std::vector<UnderPrior> all;
+  for (const double width : {0.5, 2.0}) {
+    UnderPrior under{.width = width, .best = {}, .probability = 0.0};
+    std::vector<double> posterior;
+    for (const Scored& one : result.scored)
+      posterior.push_back(one.fit.log_evidence + one.log_prior +
+                          change_of_evidence(one.fit, result.baseline.z.size(), width));
+    const auto best = std::ranges::max_element(posterior);
+    if (best == posterior.end()) return all;
+    double sum = 0.0;
+    for (const double value : posterior) sum += std::exp(value - *best);
+    under.best = result.scored[static_cast<std::size_t>(best - posterior.begin())].fit.hypothesis;
+    under.probability = 1.0 / sum;
+    all.push_back(std::move(under));
+  }
+  return all;
+}
 
 double stability_of(const SearchResult& result, const std::vector<CouponCell>& cells, std::uint64_t seed,
                     int halves, std::size_t rivals) {

@@ -167,7 +167,10 @@ Decision decide(const ForwardModel& model, const SearchResult& result, const Evi
     return decision;
   }
   const bool alone = best.probability >= options.probability;
-  if (alone && evidence.scatter_known && evidence.stability >= options.stability) {
+  const auto other = std::ranges::find_if(
+      evidence.priors, [&](const UnderPrior& under) { return names(model, under.best) != name; });
+  const bool flips = other != evidence.priors.end();
+  if (alone && evidence.scatter_known && evidence.stability >= options.stability && !flips) {
     const bool incomplete = something_left || decision.excess_removed < options.excess;
     decision.answer = incomplete ? Answer::named_incomplete : Answer::named;
     decision.reasons.push_back(
@@ -184,20 +187,25 @@ Decision decide(const ForwardModel& model, const SearchResult& result, const Evi
   decision.answer = Answer::one_of;
   if (alone) {
     // What demoted it leaves its look-alikes open.
+    const auto open_up = [&](const std::string& id) {
+      if (std::ranges::find(decision.candidate_set, id) == decision.candidate_set.end() &&
+          std::ranges::any_of(model.candidates, [&](const Candidate& c) { return c.id == id; }))
+        decision.candidate_set.push_back(id);
+    };
     for (const std::size_t effect : best.fit.hypothesis)
-      for (const std::string& id : model.candidates[effect].look_alikes)
-        if (std::ranges::find(decision.candidate_set, id) == decision.candidate_set.end() &&
-            std::ranges::any_of(model.candidates, [&](const Candidate& c) { return c.id == id; }))
-          decision.candidate_set.push_back(id);
+      for (const std::string& id : model.candidates[effect].look_alikes) open_up(id);
+    std::string but = "the scatter is assumed: no one name is given, its look-alikes stay open.";
+    if (evidence.scatter_known && evidence.stability < options.stability)
+      but = fmt::format("it wins in only {:.0f} % of half-samples; its look-alikes stay open.",
+                        100.0 * evidence.stability);
+    else if (evidence.scatter_known) {
+      for (const std::size_t effect : other->best) open_up(model.candidates[effect].id);
+      but = fmt::format("with priors of the effects {:g} times as wide it is {}.", other->width,
+                        other->best.empty() ? "no effect" : names(model, other->best));
+    }
     decision.group = family_of(decision.candidate_set);
     decision.reasons.push_back(
-        evidence.scatter_known
-            ? fmt::format("{} is most probable ({:.2f}) but wins in only {:.0f} % of "
-                          "half-samples; its look-alikes stay open.",
-                          name, best.probability, 100.0 * evidence.stability)
-            : fmt::format("{} is most probable ({:.2f}), but the scatter is assumed: no one "
-                          "name is given, its look-alikes stay open.",
-                          name, best.probability));
+        fmt::format("{} is most probable ({:.2f}), but {}", name, best.probability, but));
   } else {
     decision.reasons.push_back(
         fmt::format("The best name, {}, has the probability {:.2f} only.", name, best.probability));

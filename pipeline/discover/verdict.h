@@ -6,6 +6,7 @@
 #include "pipeline/discover/options.h"
 #include "pipeline/discover/search.h"
 #include "pipeline/discover/shape.h"
+#include "pipeline/discover/stability.h"
 
 namespace heddle::discover {
 
@@ -18,6 +19,7 @@ struct Evidence {
   double gate_p = 1.0;
   bool scatter_known = true;       ///< from replicates or given; else no one name
   double stability = 1.0;          ///< share of half-samples in which the best hypothesis wins
+  std::vector<UnderPrior> priors;  ///< what would be best were the effects' priors another width
   std::vector<Shape> gap_shapes;   ///< of the baseline's gap, best first
   std::vector<Shape> rest_shapes;  ///< of what the best hypothesis leaves over
 };

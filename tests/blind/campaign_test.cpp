@@ -85,7 +85,7 @@ TEST_CASE("campaigns have the cases that the protocol asks for, under numbers th
   using enum blindgen::Kind;
   CHECK(kinds[single] == 660);
   CHECK(kinds[null] + kinds[null_exact] == 240);
-  CHECK(kinds[pair] == 120);
+  CHECK(kinds[pair] == 240);
   CHECK(kinds[outside] >= 60);
   CHECK(kinds[rig] == 60);
   // Shuffled: the mean number of each kind is that of all, within five deviations.

@@ -1,6 +1,8 @@
 #include <catch2/catch.hpp>
 #include <cmath>
 #include <limits>
+#include <numbers>
+#include <vector>
 
 #include "friction/calibrate.h"
 #include "friction/combinations.h"
@@ -211,6 +213,32 @@ TEST_CASE("a film takes on the tool's temperature in h^2/alpha", "[friction][ana
   const double slow = evaluate(model, context, {.dwell = 3.0}).state.film_temperature;
   const double fast = evaluate(model, context, {.dwell = 0.02}).state.film_temperature;
   CHECK(slow < fast - 20.0);
+}
+
+TEST_CASE("a film that is heated evenly between held walls warms by its modes", "[friction][analytic]") {
+  CHECK(heated_share(0.0).value == Approx(0.0).margin(1e-15));
+  CHECK(heated_share(50.0).value == Approx(1.0).epsilon(1e-12));
+  // The heat equation on half of a layer of unit thickness, by finite volumes: u_t = u_xx + 1, final mean
+  // 1/12.
+  constexpr int n = 200;
+  constexpr double cell = 0.5 / n, step = 0.4 * cell * cell;
+  std::vector<double> u(n, 0.0), next(n);
+  double time = 0.0;
+  for (const double tau : {0.02, 0.1, 0.5, 2.0}) {
+    while (time < tau / (std::numbers::pi * std::numbers::pi)) {
+      for (int i = 0; i < n; ++i) {
+        const double from_wall = i == 0 ? -2.0 * u[0] / cell : (u[i - 1] - u[i]) / cell;
+        const double to_middle = i == n - 1 ? 0.0 : (u[i + 1] - u[i]) / cell;
+        next[i] = u[i] + step * ((from_wall + to_middle) / cell + 1.0);
+      }
+      u.swap(next);
+      time += step;
+    }
+    double mean = 0.0;
+    for (const double value : u) mean += value / n;
+    CAPTURE(tau);
+    CHECK(heated_share(tau).value == Approx(12.0 * mean).margin(6e-4));
+  }
 }
 
 TEST_CASE("a pull shows its peak and settles where the friction test reads it", "[friction]") {

@@ -274,3 +274,32 @@ TEST_CASE(
   CHECK(push_alone->fit.z[0] == Approx(0.0).margin(0.3));
   CHECK(push_alone->fit.trial.effects[0].second[0] == Approx(1.0).margin(0.15));
 }
+
+TEST_CASE("a name that another width of the priors would change is not given alone", "[discover][verdict]") {
+  const Line line;
+  const Observations seen{.value = measured(line, 0.15, 0.1)->value(),
+                          .covariance = 0.01 * Eigen::MatrixXd::Identity(12, 12)};
+  const ForwardModel model = line.model(normal(0.0, 0.4), false);
+  const SearchResult result = search(model, seen);
+  // All is linear: the search with priors of that width says the same.
+  const std::vector<UnderPrior> under = under_other_priors(result);
+  REQUIRE(under.size() == 2);
+  for (const UnderPrior& one : under) {
+    const SearchResult anew = search(line.model(normal(0.0, 0.4 * one.width), false), seen);
+    CHECK(one.best == anew.best().fit.hypothesis);
+    CHECK(one.probability == Approx(anew.best().probability).epsilon(1e-4));
+  }
+  CHECK(under[0].probability != Approx(under[1].probability).epsilon(0.05));
+
+  const SearchResult plain = search(model, {.value = measured(line, 0.5, 0.02)->value(),
+                                            .covariance = 4e-4 * Eigen::MatrixXd::Identity(12, 12)});
+  Evidence evidence;
+  evidence.gate_p = 0.0;
+  evidence.priors = {{.width = 0.5, .best = {0}, .probability = 1.0},
+                     {.width = 2.0, .best = {0}, .probability = 1.0}};
+  CHECK(decide(model, plain, evidence).answer == Answer::named);
+  evidence.priors[1].best = {};
+  const Decision open = decide(model, plain, evidence);
+  CHECK(open.answer == Answer::one_of);
+  CHECK(open.reasons.back().find("2 times as wide it is no effect") != std::string::npos);
+}
