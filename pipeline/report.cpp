@@ -136,6 +136,20 @@ std::string weave(const ReportInput& input) {
   return out + pair(left, right);
 }
 
+// The structural part is made of plies that were sheared before they were consolidated.
+std::string sheared_solid(const std::vector<mesoscale::solid::ShearedSolid>& rows) {
+  if (rows.empty()) return "";
+  const std::string table = sheared_table(rows);
+  if (rows.size() < 2) return table;
+  return pair(figure(sheared_stiffness_chart(rows),
+                     "What the sheet becomes where the part has sheared it: axis 1 along the warp, the weft "
+                     "turned towards it. A16 couples stretch and shear."),
+              figure(sheared_thermal_chart(rows),
+                     "What a kelvin of cooling pulls with in a ply held flat, along the warp, across it and "
+                     "in shear.")) +
+         table;
+}
+
 std::string solid_part(const ReportInput& input) {
   if (!input.solid) return "";
   const std::string_view caption =
@@ -144,7 +158,7 @@ std::string solid_part(const ReportInput& input) {
                        : "How stiff the cell is in each direction of its plane.";
   return pair(figure(stiffness_chart(*input.solid), caption),
               "<div>\n" + facts_table(solid_facts(*input.solid)) + "</div>\n") +
-         stiffness_tables(*input.solid);
+         stiffness_tables(*input.solid) + sheared_solid(input.solid->sheared);
 }
 
 std::string signed_percent(const std::optional<double>& share) {

@@ -91,6 +91,8 @@ TEST_CASE("a weave with solid writes its stiffness, from the cache to the same b
   const std::string report = read_text_file(scratch.path / "first/report.html");
   CHECK(report.find("The solid part") != std::string::npos);
   CHECK(report.find("The solid is balanced") != std::string::npos);
+  CHECK(report.find("thermal resultants of the ply against its trellis angle") != std::string::npos);
+  CHECK(report.find("Stiffness of the ply by trellis angle") != std::string::npos);
 
   options.output = scratch.path / "second";
   CHECK(pipeline::weave_case(options) == 0);
