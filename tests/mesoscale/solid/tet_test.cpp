@@ -100,9 +100,8 @@ TEST_CASE("tetrahedra of one material are a plate of it: A exactly, D from above
   CHECK(gap(plate.bottomRightCorner<3, 3>(), d) < 0.1);
 }
 
-TEST_CASE(
-    "the sheet of Table 1 by coarse voxels and by coarse tetrahedra agrees within what the meshes leave",
-    "[solid][tetrahedra]") {
+TEST_CASE("the sheet of Table 1 by coarse tetrahedra is a little stiffer than by voxels, and shears alike",
+          "[solid][tetrahedra]") {
   const Sheet s = sheet(0.0);
   const Matrix6 tets = by_tets(s, 10, 2, polypropylene);
   const PlateStiffness voxels = by_voxels(s, 16, 12);
