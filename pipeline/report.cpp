@@ -215,6 +215,25 @@ std::string friction_section(const ReportInput& input) {
         "Share of the fabric face that touches a flat tool, against nominal pressure, for several trellis "
         "shear angles γ. The steeper the line, the less friction depends on pressure.");
   }
+  if (input.fabric && !input.touched.empty()) {
+    std::vector<std::string> pictures;
+    for (const mesoscale::TouchedFace& face : input.touched) {
+      const auto share = [&](double pressure) {
+        return significant(100.0 * input.fabric->contact.evaluate(pressure, face.shear_angle).fraction, 3) +
+               " %";
+      };
+      pictures.push_back(figure(
+          touched_picture(face),
+          fmt::format("One repeat{}: where a flat tool touches, by the nominal pressure at which it gets "
+                      "there. At 0.1, 1 and 10 kPa it touches {}, {} and {} of the face.",
+                      face.shear_angle == 0.0
+                          ? std::string()
+                          : fmt::format(", sheared by {:.0f}°", degrees * face.shear_angle),
+                      share(1e2), share(1e3), share(1e4))));
+    }
+    for (std::size_t k = 0; k < pictures.size(); k += 2)
+      contact += k + 1 < pictures.size() ? pair(pictures[k], pictures[k + 1]) : pictures[k];
+  }
   const auto& curve = input.friction_curve;
   if (std::any_of(curve.begin(), curve.end(), [](const FrictionCurveRow& row) { return row.hersey > 0.0; })) {
     hersey =
