@@ -11,15 +11,19 @@ namespace heddle::mesoscale {
 namespace {
 
 // Constants that no source of ours measures for this fabric.
-std::vector<std::string> priors() {
-  return {"forming.compaction_modulus", "forming.compaction_exponent",
-          "forming.tow_friction",       "forming.reference_tension",
-          "forming.in_tow_shear_share", "forming.bonding",
-          "forming.compression_ratio",  "weave.fibre_diameter",
-          "resin.consistency",          "resin.power_index",
-          "resin.activation_energy",    "compaction.packing",
-          "compaction.packing_modulus", "tension.straightening",
-          "geometry.width_scatter",     "shear.ramp_angle"};
+std::vector<std::string> priors(const FormingSpec& forming) {
+  std::vector<std::string> names{"forming.compaction_modulus", "forming.compaction_exponent"};
+  if (forming.compaction == CompactionChoice::van_wyk) names.pop_back();
+  if (forming.compaction == CompactionChoice::gutowski)
+    names = {"forming.gutowski_spring", "forming.gutowski_available"};
+  for (const char* name : {"forming.tow_friction", "forming.reference_tension", "forming.in_tow_shear_share",
+                           "forming.bonding", "forming.compression_ratio", "weave.fibre_diameter",
+                           "resin.consistency", "resin.power_index", "resin.activation_energy"})
+    names.push_back(name);
+  if (forming.compaction != CompactionChoice::gutowski)
+    names.insert(names.end(), {"compaction.packing", "compaction.packing_modulus"});
+  names.insert(names.end(), {"tension.straightening", "geometry.width_scatter", "shear.ramp_angle"});
+  return names;
 }
 
 CellSummary summarise(const FormingModels& models, const MassBalance& mass, const CompactionLaw& law) {
@@ -61,7 +65,7 @@ CellResult analyse(const CellSpec& spec) {
   for (std::size_t i = 0; i < 2; ++i) out.bending[i] = constant_in_temperature(models.bending[i].value);
   out.compaction = std::move(contact.compaction);
   out.contact = std::move(contact.contact);
-  out.provenance = {specification_hash(spec), priors(), contact.grid_error};
+  out.provenance = {specification_hash(spec), priors(spec.forming), contact.grid_error};
   result.summary.locking_angle = locking_angle(out.shear_stress);
 
   if (Problems problems = check(out); !problems.empty())

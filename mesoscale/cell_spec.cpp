@@ -7,6 +7,7 @@
 
 #include "mesoscale/cell.h"
 #include "mesoscale/closure.h"
+#include "mesoscale/compaction.h"
 
 namespace heddle::mesoscale {
 
@@ -95,6 +96,11 @@ void check_forming(Problems& problems, const FormingSpec& f) {
       {"forming.compaction_exponent", f.compaction_exponent, "", 1.0,
        above_to(1.0, f.compaction_exponent, 20.0), "must satisfy 1 < n <= 20",
        "Toll: 3 for random, 5 for planar networks, more for bundles."},
+      {"forming.gutowski_spring", f.gutowski_spring, "kPa", 1e-3, within(1.0, f.gutowski_spring, 1e9),
+       "must lie between 0.001 and 1000000 kPa", "The default is 3 kPa."},
+      {"forming.gutowski_available", f.gutowski_available, "", 1.0,
+       above_to(packed_fibre_fraction, f.gutowski_available, 0.907),
+       "must satisfy 0.82 < V_a <= 0.907, hexagonal packing", "The default is 0.85."},
       {"forming.tow_friction", f.tow_friction, "", 1.0, within(0.0, f.tow_friction, 2.0),
        "must lie between 0 and 2", "The default is 0.2."},
       {"forming.reference_tension", f.reference_tension, "N/m", 1.0, above_to(0.0, f.reference_tension, 1e5),

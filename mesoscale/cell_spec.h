@@ -65,10 +65,16 @@ struct ResinSpec {
   double reference_temperature = 453.15;  ///< [K]
 };
 
+/// Law of the tows' compaction (compaction.h). van_wyk is the network of exponent 3.
+enum class CompactionChoice { toll, van_wyk, gutowski };
+
 /// Constants of the forming laws that no source of ours measures: priors, each reported as unverified.
 struct FormingSpec {
+  CompactionChoice compaction = CompactionChoice::toll;
   double compaction_modulus = 3.2e6;  ///< k E of sigma = k E (V^n - V0^n) [Pa]
-  double compaction_exponent = 5.0;   ///< n [-]; 3 random, 5 planar, larger for bundles (Toll)
+  double compaction_exponent = 5.0;   ///< n of Toll's law [-]; 5 planar networks, larger for bundles
+  double gutowski_spring = 3e3;       ///< A_s [Pa]; as stiff as Toll's default where V = 0.4
+  double gutowski_available = 0.85;   ///< V_a [-], between packed_fibre_fraction and hexagonal packing
   double tow_friction = 0.2;          ///< mu_t between crossing tows (lubricated) [-]
   double reference_tension = 800.0;   ///< tow tension per width at which the shear energy is taken [N/m]
   double in_tow_shear_share = 0.5;    ///< s_in: 0 = tows turn rigidly, 1 = they shear inside [-]

@@ -23,37 +23,81 @@ double packing_work(const CompactionLaw& law, double v) {
   return law.packing_modulus * (primitive(v) - primitive(p));
 }
 
+// Gutowski's law up to where it goes on straight.
+CompactionLaw::Value gutowski(const CompactionLaw& law, double v, double v0) {
+  const double rise = std::sqrt(v / v0), room = std::sqrt(law.available / v);
+  const double left = room - 1.0, left2 = left * left;
+  const double stress = law.spring * (rise - 1.0) / (left2 * left2);
+  // d rise / dV = rise / 2V, d room / dV = - room / 2V.
+  const double slope = law.spring * (0.5 * rise + 2.0 * (rise - 1.0) * room / left) / (left2 * left2 * v);
+  return {stress, slope};
+}
+
+// Integral of Gutowski's stress over V^2. With x = sqrt V it is 2 A (x^2 / x0 - x) / (xa - x)^4 dx, and in
+// s = xa - x a sum of powers.
+double gutowski_primitive(const CompactionLaw& law, double v, double v0) {
+  const double xa = std::sqrt(law.available), x0 = std::sqrt(v0), s = xa - std::sqrt(v);
+  const double c0 = xa * xa / x0 - xa, c1 = 1.0 - 2.0 * xa / x0, c2 = 1.0 / x0;
+  return 2.0 * law.spring * ((c0 / (3.0 * s) + 0.5 * c1) / s + c2) / s;
+}
+
+// The tangent at V_c takes over beyond it.
+double straight_from(double v0) {
+  return std::max(packed_fibre_fraction, v0);
+}
+
 }  // namespace
 
-CompactionLaw::Value CompactionLaw::evaluate(double fibre_fraction) const {
+CompactionLaw::Value CompactionLaw::evaluate(double fibre_fraction, double stress_free) const {
+  if (form == CompactionForm::gutowski) {
+    if (fibre_fraction <= stress_free) return {0.0, 0.0};
+    const double last = straight_from(stress_free);
+    if (fibre_fraction <= last) return gutowski(*this, fibre_fraction, stress_free);
+    const Value at_last = gutowski(*this, last, stress_free);
+    return {at_last.stress + at_last.slope * (fibre_fraction - last), at_last.slope};
+  }
   const double bed = modulus * power(fibre_fraction, exponent);
   const double excess = std::max(fibre_fraction / packing - 1.0, 0.0);
   return {bed + packing_modulus * excess * excess,
           exponent * bed / fibre_fraction + 2.0 * packing_modulus * excess / packing};
 }
 
+double CompactionLaw::work(double stress_free, double fibre_fraction) const {
+  const double v0 = stress_free, v = fibre_fraction;
+  if (form == CompactionForm::gutowski) {
+    const double last = straight_from(v0), upto = std::min(v, last);
+    double sum = gutowski_primitive(*this, upto, v0) - gutowski_primitive(*this, v0, v0);
+    if (v <= last) return sum;
+    const Value at_last = gutowski(*this, last, v0);
+    return sum + (at_last.stress - at_last.slope * last) * (1.0 / last - 1.0 / v) +
+           at_last.slope * std::log(v / last);
+  }
+  const double n = exponent;
+  const double bed = modulus * (power(v, n - 1.0) - power(v0, n - 1.0)) / (n - 1.0);
+  const double packed = packing_work(*this, v) - packing_work(*this, v0);
+  return bed + packed;
+}
+
 TowSqueeze::TowSqueeze(const CompactionLaw& law, double thickness, double fibre_fraction)
     : law_(law),
       thickness_(thickness),
       fibre_fraction_(fibre_fraction),
-      start_(law.evaluate(fibre_fraction)) {}
+      start_(law.evaluate(fibre_fraction, fibre_fraction)) {}
 
 TowSqueeze::Value TowSqueeze::evaluate(double squeeze) const {
   if (squeeze <= 0.0) return {0.0, 0.0, 0.0};
   const double v0 = fibre_fraction_, left = thickness_ - squeeze;
   const double v = v0 * thickness_ / left;
-  const CompactionLaw::Value now = law_.evaluate(v);
-  // d delta = V0 t dV / V^2 turns the work into integrals of V^(n-2) and of the packing term over V^2.
-  const double n = law_.exponent;
-  const double bed_work = law_.modulus * (power(v, n - 1.0) - power(v0, n - 1.0)) / (n - 1.0);
-  const double packing = packing_work(law_, v) - packing_work(law_, v0);
-  return {v0 * thickness_ * (bed_work + packing) - start_.stress * squeeze, now.stress - start_.stress,
+  const CompactionLaw::Value now = law_.evaluate(v, v0);
+  // d delta = V0 t dV / V^2 turns the work into integrals over V^2.
+  return {v0 * thickness_ * law_.work(v0, v) - start_.stress * squeeze, now.stress - start_.stress,
           now.slope * v / left};
 }
 
 double TowSqueeze::stress(double squeeze) const {
   if (squeeze <= 0.0) return 0.0;
-  return law_.evaluate(fibre_fraction_ * thickness_ / (thickness_ - squeeze)).stress - start_.stress;
+  return law_.evaluate(fibre_fraction_ * thickness_ / (thickness_ - squeeze), fibre_fraction_).stress -
+         start_.stress;
 }
 
 double TowSqueeze::squeeze_at(double fibre_fraction_reached) const {

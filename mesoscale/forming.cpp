@@ -4,10 +4,19 @@
 
 namespace heddle::mesoscale {
 
+CompactionLaw compaction_law(const FormingSpec& forming) {
+  CompactionLaw law{forming.compaction_modulus, forming.compaction_exponent};
+  if (forming.compaction == CompactionChoice::van_wyk) law.exponent = 3.0;
+  if (forming.compaction == CompactionChoice::gutowski) law.form = CompactionForm::gutowski;
+  law.spring = forming.gutowski_spring;
+  law.available = forming.gutowski_available;
+  return law;
+}
+
 FormingModels forming_models(const CellSpec& spec) {
   FormingModels models;
   models.fabric = fabric_geometry(spec.weave, spec.state);
-  models.compaction = {spec.forming.compaction_modulus, spec.forming.compaction_exponent};
+  models.compaction = compaction_law(spec.forming);
   models.bending =
       bending_stiffness(fabric_geometry(spec.weave, CellState::consolidated),
                         {spec.weave.fibre_modulus, spec.weave.fibre_diameter, spec.forming.bonding});
@@ -42,6 +51,9 @@ std::string describe(const CellSpec& spec) {
   const WeaveSpec lens;
   if (w.section != lens.section || w.section_power != lens.section_power || w.section_cap != lens.section_cap)
     text += fmt::format(";section {} {} {}", static_cast<int>(w.section), w.section_power, w.section_cap);
+  if (f.compaction != CompactionChoice::toll)
+    text += fmt::format(";compaction {} {} {}", static_cast<int>(f.compaction), f.gutowski_spring,
+                        f.gutowski_available);
   return text;
 }
 

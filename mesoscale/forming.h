@@ -8,6 +8,8 @@
 
 namespace heddle::mesoscale {
 
+CompactionLaw compaction_law(const FormingSpec& forming);
+
 /// The models behind the tables of FabricProperties, from one specification: for tests, reports and studies.
 struct FormingModels {
   FabricGeometry fabric;  ///< in the state asked for

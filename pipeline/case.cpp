@@ -148,7 +148,11 @@ std::vector<std::string> stage_lines(const Case& a_case) {
   if (a_case.solid)
     lines.push_back(fmt::format("solid: stiffness of the consolidated weave, {} voxels a pitch, {} layers",
                                 a_case.solid->grid.per_pitch, a_case.solid->grid.layers));
-  if (a_case.voxels) {
+  if (a_case.voxels && a_case.voxels->format == mesoscale::solid::VoxelFormat::texgen) {
+    lines.push_back(fmt::format("solid: stiffness of TexGen's voxels in {}, {}",
+                                a_case.voxels->file.filename().string(),
+                                a_case.settings.text("cell.boundary")));
+  } else if (a_case.voxels) {
     const auto [nx, ny, nz] = a_case.voxels->shape;
     lines.push_back(fmt::format("solid: stiffness of {} x {} x {} voxels, {}", nx, ny, nz,
                                 a_case.settings.text("cell.boundary")));

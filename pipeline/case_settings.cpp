@@ -84,8 +84,13 @@ mesoscale::ResinSpec resin_of(const Settings& settings) {
 
 mesoscale::FormingSpec forming_of(const Settings& settings) {
   mesoscale::FormingSpec forming;
+  if (settings.is("forming.compaction", "van_wyk")) forming.compaction = mesoscale::CompactionChoice::van_wyk;
+  if (settings.is("forming.compaction", "gutowski"))
+    forming.compaction = mesoscale::CompactionChoice::gutowski;
   take(settings, "forming.compaction_modulus", forming.compaction_modulus);
   take(settings, "forming.compaction_exponent", forming.compaction_exponent);
+  take(settings, "forming.gutowski_spring", forming.gutowski_spring);
+  take(settings, "forming.gutowski_available", forming.gutowski_available);
   take(settings, "forming.tow_friction", forming.tow_friction);
   take(settings, "forming.reference_tension", forming.reference_tension);
   take(settings, "forming.in_tow_shear_share", forming.in_tow_shear_share);

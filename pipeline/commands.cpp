@@ -1,5 +1,6 @@
 #include "pipeline/commands.h"
 
+#include <algorithm>
 #include <cmath>
 #include <iostream>
 #include <memory>
@@ -179,6 +180,17 @@ std::vector<SectionLine> report_section(const std::vector<mesoscale::Outline>& o
   return lines;
 }
 
+/// The fabric as woven, and sheared to 30 degrees as at the side of a dome.
+std::vector<mesoscale::TouchedFace> touched_faces(const mesoscale::CellSpec& spec,
+                                                  const mesoscale::FabricProperties& fabric) {
+  const mesoscale::FabricGeometry geometry = mesoscale::fabric_geometry(spec.weave, spec.state);
+  const int tows = std::max(geometry.weave.warps, geometry.weave.wefts);
+  std::vector<mesoscale::TouchedFace> faces;
+  for (const double angle : {0.0, std::numbers::pi / 6.0})
+    faces.push_back(mesoscale::touched_face(geometry, fabric.compaction, angle, std::min(24 * tows, 96)));
+  return faces;
+}
+
 ReportInput report_input(const Case& a_case, const Findings& findings) {
   ReportInput input;
   input.name = a_case.name;
@@ -190,6 +202,8 @@ ReportInput report_input(const Case& a_case, const Findings& findings) {
     input.height = report_height(findings.pictures->height);
     input.section = report_section(findings.pictures->section);
     input.tow_bodies = findings.pictures->bodies;
+    // A stamping has enough to show.
+    if (!findings.stamping) input.touched = touched_faces(*a_case.cell, findings.cell->fabric);
   }
   input.solid = findings.solid;
   if (findings.friction) {

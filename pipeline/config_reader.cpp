@@ -488,7 +488,9 @@ class ConfigReader {
     for (std::string term; stream >> term;) {
       const std::size_t equals = term.find('=');
       if (equals != std::string::npos) {
-        words.push_back(term.substr(0, equals) + " is " + term.substr(equals + 1));
+        const std::size_t start = term.front() == '!' ? 1 : 0;
+        words.push_back(term.substr(start, equals - start) + (start == 1 ? " is not " : " is ") +
+                        term.substr(equals + 1));
       } else if (term.front() == '!') {
         words.push_back(term.substr(1) + " is not given");
       } else {
@@ -622,10 +624,11 @@ bool is_used(const Key& key, const Settings& settings) {
   for (std::string term; conditions >> term;) {
     const std::size_t equals = term.find('=');
     const bool negated = term.front() == '!';
-    const std::string path = term.substr(negated ? 1 : 0, equals);
+    const std::size_t start = negated ? 1 : 0;
+    const std::string path = term.substr(start, equals == std::string::npos ? equals : equals - start);
     bool holds = false;
     if (equals != std::string::npos) {
-      holds = settings.is(path, term.substr(equals + 1));
+      holds = settings.is(path, term.substr(equals + 1)) != negated;
     } else {
       holds = (settings.has(path) || settings.blocks.count(path) > 0) != negated;
     }

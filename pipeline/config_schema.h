@@ -56,7 +56,8 @@ struct Key {
   int columns = 0;  ///< of rows
   Stage stage = Stage::always;
   /// Conditions joined by blanks, all of which must hold for the key to be used: "friction.law=stribeck",
-  /// "friction.calibration.data" (given), "!friction.calibration.data" (not given).
+  /// "friction.calibration.data" (given), "!friction.calibration.data" (not given); "!a.key=word" holds
+  /// unless it is that word.
   std::string used_when = {};
   std::string help = {};    ///< one line
   std::string family = {};  ///< keys of one family share a row of the reference page, under this path

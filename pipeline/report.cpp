@@ -136,6 +136,20 @@ std::string weave(const ReportInput& input) {
   return out + pair(left, right);
 }
 
+// The structural part is made of plies that were sheared before they were consolidated.
+std::string sheared_solid(const std::vector<mesoscale::solid::ShearedSolid>& rows) {
+  if (rows.empty()) return "";
+  const std::string table = sheared_table(rows);
+  if (rows.size() < 2) return table;
+  return pair(figure(sheared_stiffness_chart(rows),
+                     "What the sheet becomes where the part has sheared it: axis 1 along the warp, the weft "
+                     "turned towards it. A16 couples stretch and shear."),
+              figure(sheared_thermal_chart(rows),
+                     "What a kelvin of cooling pulls with in a ply held flat, along the warp, across it and "
+                     "in shear.")) +
+         table;
+}
+
 std::string solid_part(const ReportInput& input) {
   if (!input.solid) return "";
   const std::string_view caption =
@@ -144,7 +158,7 @@ std::string solid_part(const ReportInput& input) {
                        : "How stiff the cell is in each direction of its plane.";
   return pair(figure(stiffness_chart(*input.solid), caption),
               "<div>\n" + facts_table(solid_facts(*input.solid)) + "</div>\n") +
-         stiffness_tables(*input.solid);
+         stiffness_tables(*input.solid) + sheared_solid(input.solid->sheared);
 }
 
 std::string signed_percent(const std::optional<double>& share) {
@@ -200,6 +214,25 @@ std::string friction_section(const ReportInput& input) {
         contact_chart(input.fabric->contact),
         "Share of the fabric face that touches a flat tool, against nominal pressure, for several trellis "
         "shear angles γ. The steeper the line, the less friction depends on pressure.");
+  }
+  if (input.fabric && !input.touched.empty()) {
+    std::vector<std::string> pictures;
+    for (const mesoscale::TouchedFace& face : input.touched) {
+      const auto share = [&](double pressure) {
+        return significant(100.0 * input.fabric->contact.evaluate(pressure, face.shear_angle).fraction, 3) +
+               " %";
+      };
+      pictures.push_back(figure(
+          touched_picture(face),
+          fmt::format("One repeat{}: where a flat tool touches, by the nominal pressure at which it gets "
+                      "there. At 0.1, 1 and 10 kPa it touches {}, {} and {} of the face.",
+                      face.shear_angle == 0.0
+                          ? std::string()
+                          : fmt::format(", sheared by {:.0f}°", degrees * face.shear_angle),
+                      share(1e2), share(1e3), share(1e4))));
+    }
+    for (std::size_t k = 0; k < pictures.size(); k += 2)
+      contact += k + 1 < pictures.size() ? pair(pictures[k], pictures[k + 1]) : pictures[k];
   }
   const auto& curve = input.friction_curve;
   if (std::any_of(curve.begin(), curve.end(), [](const FrictionCurveRow& row) { return row.hersey > 0.0; })) {

@@ -10,6 +10,7 @@
 #include "mesoscale/cell_spec.h"
 #include "mesoscale/level_set.h"
 #include "mesoscale/solid/solid_cell.h"
+#include "mesoscale/touched_face.h"
 #include "pipeline/outputs.h"
 #include "pipeline/picture.h"
 
@@ -39,7 +40,8 @@ struct ReportInput {
   std::optional<mesoscale::solid::SolidResult> solid = {};
   HeightField height = {};
   std::optional<mesoscale::TowBodies> tow_bodies = {};
-  std::vector<SectionLine> section = {};  ///< of one cell, with its tows
+  std::vector<SectionLine> section = {};             ///< of one cell, with its tows
+  std::vector<mesoscale::TouchedFace> touched = {};  ///< upper faces under a flat tool, an angle each
 
   std::vector<FrictionTestRow> friction_test = {};
   std::vector<FrictionCurveRow> friction_curve =

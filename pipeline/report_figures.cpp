@@ -168,6 +168,30 @@ Canvas section_picture(const std::vector<SectionLine>& section) {
   return draw(picture);
 }
 
+Canvas touched_picture(const mesoscale::TouchedFace& face) {
+  constexpr double lowest = -2.0, highest = 2.0;  // powers of ten, kPa
+  MeshPicture picture;
+  picture.label = fmt::format("Patches of the upper face that touch a flat tool, sheared by {:.0f} degrees",
+                              degrees * face.shear_angle);
+  for (int j = 0; j < face.n; ++j)
+    for (int i = 0; i < face.n; ++i) {
+      const double along = (i + 0.5) / face.n, across = (j + 0.5) / face.n;
+      picture.points.push_back({along * face.along_warp[0] + across * face.along_weft[0],
+                                along * face.along_warp[1] + across * face.along_weft[1], 0.0});
+      const double pressure = face.pressure[static_cast<std::size_t>(j) * face.n + i];
+      picture.value.push_back(pressure > 0.0 ? std::clamp(std::log10(1e-3 * pressure), lowest, highest)
+                                             : lowest);
+      if (i + 1 < face.n && j + 1 < face.n) {
+        const int at = j * face.n + i;
+        picture.quads.push_back({at, at + 1, at + 1 + face.n, at + face.n});
+      }
+    }
+  picture.colours = {lowest, highest, "Touched from 10^x", "kPa", ColourMap::angle};
+  picture.width = half_width;
+  picture.height = 360.0;
+  return draw(picture);
+}
+
 Canvas contact_chart(const mesoscale::ContactArea& contact) {
   LineChart chart;
   chart.label = "Contact fraction against pressure for several shear angles";

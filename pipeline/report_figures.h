@@ -20,6 +20,8 @@ Canvas iteration_chart(const std::vector<macroscale::HistoryRow>& history);
 Canvas height_picture(const HeightField& height);
 Canvas section_picture(const std::vector<SectionLine>& section);
 Canvas contact_chart(const mesoscale::ContactArea& contact);
+/// Colours of the power of ten of the nominal pressure in kPa at which the tool first touches a place.
+Canvas touched_picture(const mesoscale::TouchedFace& face);
 enum class FrictionAbscissa { hersey, speed };
 Canvas friction_chart(const std::vector<FrictionCurveRow>& rows, FrictionAbscissa abscissa);
 

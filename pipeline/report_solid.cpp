@@ -1,8 +1,10 @@
 #include "pipeline/report_solid.h"
 
 #include <Eigen/LU>
+#include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <tuple>
 
 #include <fmt/format.h>
 
@@ -100,6 +102,106 @@ Canvas stiffness_chart(const solid::SolidResult& s) {
   chart.height = 300.0;
   chart.label_room = 110.0;
   return draw(chart);
+}
+
+namespace {
+
+constexpr double degrees = 180.0 / std::numbers::pi;
+
+// The rows by rising angle, whatever the order they were asked for in.
+std::vector<const solid::ShearedSolid*> by_angle(const std::vector<solid::ShearedSolid>& rows) {
+  std::vector<const solid::ShearedSolid*> sorted;
+  for (const solid::ShearedSolid& row : rows) sorted.push_back(&row);
+  std::stable_sort(sorted.begin(), sorted.end(),
+                   [](const auto* a, const auto* b) { return a->shear_angle < b->shear_angle; });
+  return sorted;
+}
+
+template <class Value>
+Series against_angle(std::string name, const std::vector<solid::ShearedSolid>& rows, const Value& value) {
+  Series series{std::move(name), {}, {}};
+  for (const solid::ShearedSolid* row : by_angle(rows)) {
+    series.x.push_back(degrees * row->shear_angle);
+    series.y.push_back(value(*row));
+  }
+  return series;
+}
+
+LineChart angle_chart(std::string label, Axis y) {
+  LineChart chart;
+  chart.label = std::move(label);
+  chart.x = {"Trellis angle", "°"};
+  chart.y = std::move(y);
+  chart.width = half_width;
+  chart.height = 300.0;
+  chart.label_room = 60.0;
+  return chart;
+}
+
+}  // namespace
+
+Canvas sheared_stiffness_chart(const std::vector<solid::ShearedSolid>& rows) {
+  LineChart chart =
+      angle_chart("stiffness of the ply against its trellis angle", {"Stiffness of the ply", "N/mm"});
+  for (const auto& [name, i, j] :
+       {std::tuple{"A11", 0, 0}, {"A22", 1, 1}, {"A12", 0, 1}, {"A66", 2, 2}, {"A16", 0, 2}})
+    chart.series.push_back(
+        against_angle(name, rows, [i = i, j = j](const auto& row) { return 1e-3 * row.plate(i, j); }));
+  return draw(chart);
+}
+
+Canvas sheared_thermal_chart(const std::vector<solid::ShearedSolid>& rows) {
+  LineChart chart = angle_chart("thermal resultants of the ply against its trellis angle",
+                                {"Pull, held flat and 1 K cooler", "N/mm"});
+  for (const auto& [name, i] : {std::pair{"N11", 0}, {"N22", 1}, {"N12", 2}})
+    chart.series.push_back(against_angle(
+        name, rows, [i = i](const auto& row) { return 1e-3 * row.plate_held[solid::expansion][i]; }));
+  return draw(chart);
+}
+
+std::string sheared_table(const std::vector<solid::ShearedSolid>& rows) {
+  using Cells = std::vector<std::string>;
+  const auto table_of = [&](const char* title, std::initializer_list<const char*> heads, const auto& cells) {
+    std::string out =
+        fmt::format("<h3>{}</h3>\n<div class=\"scroll\"><table>\n<tr><th>Trellis angle<br>°</th>", title);
+    for (const char* head : heads) out += fmt::format("<th class=\"number\">{}</th>", head);
+    out += "</tr>\n";
+    for (const solid::ShearedSolid* row : by_angle(rows)) {
+      out += fmt::format("<tr><td>{}</td>", significant(degrees * row->shear_angle, 4));
+      for (const std::string& cell : Cells(cells(*row)))
+        out += fmt::format("<td class=\"number\">{}</td>", cell);
+      out += "</tr>\n";
+    }
+    return out + "</table></div>\n";
+  };
+  const auto stiff = [](const solid::ShearedSolid& row) {
+    const double a = 1e-3 * row.plate.topLeftCorner<3, 3>().norm();
+    Cells cells{significant(1e3 * row.thickness, 4), significant(100.0 * row.fibre_fraction, 4)};
+    for (const auto& [i, j] : {std::pair{0, 0}, {1, 1}, {0, 1}, {0, 2}, {1, 2}, {2, 2}})
+      cells.push_back(entry(1e-3 * row.plate(i, j), a));
+    for (const int i : {3, 4, 5}) cells.push_back(significant(1e3 * row.plate(i, i), 4));
+    return cells;
+  };
+  const auto thermal = [](const solid::ShearedSolid& row) {
+    Cells cells;
+    const auto add = [&](const solid::Vector6& v, double factor) {
+      for (int i = 0; i < 3; ++i) cells.push_back(entry(factor * v[i], factor * v.head<3>().norm()));
+    };
+    add(row.plate_held[solid::expansion], 1e-3);
+    add(row.plate_held[solid::shrinkage], 1e-5);  // a hundredth, in N/mm
+    add(solid::free_strain(row.plate, row.plate_held[solid::expansion]), 1e6);
+    return cells;
+  };
+  return table_of("Stiffness of the ply by trellis angle",
+                  {"Thickness<br>mm", "Glass in<br>the tow, %", "A11<br>N/mm", "A22<br>N/mm", "A12<br>N/mm",
+                   "A16<br>N/mm", "A26<br>N/mm", "A66<br>N/mm", "D11<br>N mm", "D22<br>N mm", "D66<br>N mm"},
+                  stiff) +
+         table_of(
+             "Pull of the ply held flat, for a kelvin of cooling and for a resin that shrinks by 1 %, "
+             "and free expansion",
+             {"N11<br>N/mm/K", "N22<br>N/mm/K", "N12<br>N/mm/K", "N11, 1 %<br>N/mm", "N22, 1 %<br>N/mm",
+              "N12, 1 %<br>N/mm", "e11<br>1e-6/K", "e22<br>1e-6/K", "e12<br>1e-6/K"},
+             thermal);
 }
 
 std::vector<Condition> solid_facts(const solid::SolidResult& s) {

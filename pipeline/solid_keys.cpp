@@ -64,20 +64,37 @@ std::vector<Key> solid_keys() {
 std::vector<Key> voxel_keys() {
   const auto stage = Stage::voxels;
   const auto required = Presence::required;
+  const std::string texgen = "cell.voxels.format=texgen", labelled = "cell.voxels.format=labels";
   std::vector<Key> keys{
       {.path = "cell.voxels.file", .type = KeyType::file, .presence = required, .stage = stage,
-       .help = "Labels of one or two bytes (little endian) without a head: a cell of its own, no weave beside it."},
-      {.path = "cell.voxels.shape", .type = KeyType::list, .presence = required, .range = "[1, 4096]", .stage = stage,
+       .help = "Labels of one or two bytes (little endian) without a head, or TexGen's .inp: a cell of its own, no weave beside it."},
+      {.path = "cell.voxels.format", .type = KeyType::choice, .presence = Presence::defaulted, .default_text = "labels",
+       .choices = {"labels", "texgen"}, .stage = stage,
+       .help = "texgen: a voxel deck as TexGen exports it for Abaqus, with its own shape, size and tows."},
+      {.path = "cell.voxels.orientations", .type = KeyType::file, .presence = required, .stage = stage,
+       .used_when = texgen, .help = "The .ori file that TexGen writes beside the deck: fibre directions of its elements."},
+      {.path = "cell.voxels.length_unit", .type = KeyType::quantity, .unit = "mm", .presence = Presence::defaulted,
+       .default_text = "1 mm", .range = "(0 mm, 1000 mm]", .stage = stage, .used_when = texgen,
+       .help = "Of the deck's coordinates."},
+      {.path = "cell.voxels.shape", .type = KeyType::list, .presence = required, .range = "[1, 4096]", .stage = stage, .used_when = labelled,
        .help = "Voxels along x (warp), y (weft) and z (thickness), for instance [64, 64, 64]."},
       {.path = "cell.voxels.size", .type = KeyType::list, .unit = "mm", .presence = required,
-       .range = "(0 mm, 10000 mm)", .stage = stage, .help = "Edges of the cell along x, y and z."},
+       .range = "(0 mm, 10000 mm)", .stage = stage, .used_when = labelled, .help = "Edges of the cell along x, y and z."},
       {.path = "cell.voxels.order", .type = KeyType::choice, .presence = required,
-       .choices = {"x-fastest", "z-fastest"}, .stage = stage,
+       .choices = {"x-fastest", "z-fastest"}, .stage = stage, .used_when = labelled,
        .help = "Which index runs fastest in the file. No default: read in the wrong order a weave has wrong moduli."},
       {.path = "cell.boundary", .type = KeyType::choice, .presence = required, .choices = {"periodic", "plate"},
        .stage = stage,
        .help = "periodic: a stack without end, C; plate: free faces across z, A, B and D."},
   };
+  for (const auto& [name, what] : {std::pair{"axial_modulus", "Young's modulus along the fibres of TexGen's yarns."},
+                                   {"transverse_modulus", "Across them."},
+                                   {"axial_shear", "Shear modulus along the fibres."},
+                                   {"transverse_shear", "Shear modulus across them."}})
+    keys.push_back({.path = fmt::format("cell.tow.{}", name), .type = KeyType::quantity, .unit = "GPa", .presence = required,
+                    .range = "(0 GPa, 10000 GPa]", .stage = stage, .used_when = texgen, .help = what});
+  keys.push_back({.path = "cell.tow.axial_poisson", .type = KeyType::quantity, .presence = required, .range = "(-1, 1)",
+                  .stage = stage, .used_when = texgen, .help = "Contraction across under load along the fibres."});
   for (int label = 0; label < labels; ++label) {
     const std::string block = phase_block(label);
     for (const auto& [name, what] : {std::pair{"bulk_modulus", "Bulk"}, std::pair{"shear_modulus", "Shear"}})
@@ -114,6 +131,17 @@ solid::VoxelFileSpec voxels_of(const Settings& settings, const std::filesystem::
   if (settings.has("cell.voxels.size"))
     if (const auto& size = settings.many("cell.voxels.size"); size.size() == 3)
       std::copy(size.begin(), size.end(), spec.size.begin());
+  if (settings.is("cell.voxels.format", "texgen")) {
+    spec.format = solid::VoxelFormat::texgen;
+    if (settings.has("cell.voxels.orientations"))
+      spec.orientations = folder / settings.text("cell.voxels.orientations");
+    take(settings, "cell.voxels.length_unit", spec.length_unit);
+    take(settings, "cell.tow.axial_modulus", spec.tow.axial_modulus);
+    take(settings, "cell.tow.transverse_modulus", spec.tow.transverse_modulus);
+    take(settings, "cell.tow.axial_shear", spec.tow.axial_shear);
+    take(settings, "cell.tow.transverse_shear", spec.tow.transverse_shear);
+    take(settings, "cell.tow.axial_poisson", spec.tow.axial_poisson);
+  }
   if (settings.is("cell.voxels.order", "z-fastest")) spec.order = solid::AxisOrder::z_fastest;
   spec.faces = settings.is("cell.boundary", "plate") ? solid::Faces::free : solid::Faces::periodic;
   for (int label = 0; label < labels; ++label) {

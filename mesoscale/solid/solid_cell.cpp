@@ -147,7 +147,7 @@ SolidResult analyse(const VoxelFileSpec& spec, const SolverOptions& solver) {
   const std::vector<Matrix6> c = content_stiffness(read.cell, read.phases);
   SolidResult result;
   result.voxels = read.cell.count;
-  result.thickness = spec.size[2];
+  result.thickness = read.cell.edges(2, 2);
   result.different_voxels = read.cell.contents.size();
   if (spec.faces == Faces::free)
     result.plate = plate_stiffness(elastic_cell(read.cell, c), solver);

@@ -6,6 +6,7 @@
 #include <set>
 
 #include "core/text_file.h"
+#include "mesoscale/solid/texgen_file.h"
 
 namespace heddle::mesoscale::solid {
 
@@ -14,6 +15,22 @@ namespace {
 std::size_t voxels_of(const std::array<int, 3>& shape) {
   return static_cast<std::size_t>(shape[0]) * static_cast<std::size_t>(shape[1]) *
          static_cast<std::size_t>(shape[2]);
+}
+
+void check_moduli(Problems& problems, const VoxelFileSpec& spec) {
+  for (const auto& [label, moduli] : spec.phases) {
+    const bool nothing = moduli.bulk == 0.0 && moduli.shear == 0.0;
+    if (nothing || (moduli.bulk > 0.0 && moduli.shear > 0.0)) continue;
+    const std::string block = fmt::format("cell.phases.{}", label);
+    problems.push_back({"cell.phases.*.void"_family.of(std::to_string(label)),
+                        block + ".bulk_modulus",
+                        fmt::format("{:g} MPa", 1e-6 * moduli.bulk),
+                        "must be above zero together with shear_modulus, or zero together with it",
+                        "A void has neither; a material without shear stiffness is no solid.",
+                        "",
+                        0,
+                        {block + ".shear_modulus"}});
+  }
 }
 
 void check_numbers(Problems& problems, const VoxelFileSpec& spec) {
@@ -28,19 +45,7 @@ void check_numbers(Problems& problems, const VoxelFileSpec& spec) {
     problems.push_back({"*.range"_family.of("cell.voxels.size"), "cell.voxels.size", "",
                         "must be three lengths above 0 and below 10 m",
                         "Edges of the cell along x, y and z."});
-  for (const auto& [label, moduli] : spec.phases) {
-    const bool nothing = moduli.bulk == 0.0 && moduli.shear == 0.0;
-    if (nothing || (moduli.bulk > 0.0 && moduli.shear > 0.0)) continue;
-    const std::string block = fmt::format("cell.phases.{}", label);
-    problems.push_back({"cell.phases.*.void"_family.of(std::to_string(label)),
-                        block + ".bulk_modulus",
-                        fmt::format("{:g} MPa", 1e-6 * moduli.bulk),
-                        "must be above zero together with shear_modulus, or zero together with it",
-                        "A void has neither; a material without shear stiffness is no solid.",
-                        "",
-                        0,
-                        {block + ".shear_modulus"}});
-  }
+  check_moduli(problems, spec);
 }
 
 // Labels in the order of the file, or what is wrong with it.
@@ -101,6 +106,11 @@ void check_labels(Problems& problems, const VoxelFileSpec& spec, const std::vect
 
 Problems check(const VoxelFileSpec& spec) {
   Problems problems;
+  if (spec.format == VoxelFormat::texgen) {
+    check_moduli(problems, spec);
+    for (Problem& problem : check_texgen(spec)) problems.push_back(std::move(problem));
+    return problems;
+  }
   check_numbers(problems, spec);
   if (!problems.empty()) return problems;
   check_labels(problems, spec, labels_of(spec, problems));
@@ -108,6 +118,7 @@ Problems check(const VoxelFileSpec& spec) {
 }
 
 ReadVoxels read_voxels(const VoxelFileSpec& spec) {
+  if (spec.format == VoxelFormat::texgen) return read_texgen(spec);
   Problems problems;
   check_numbers(problems, spec);
   if (!problems.empty()) throw InputError(std::move(problems));

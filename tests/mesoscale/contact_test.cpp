@@ -1,5 +1,7 @@
 #include "mesoscale/contact.h"
+#include "mesoscale/touched_face.h"
 
+#include <algorithm>
 #include <catch2/catch.hpp>
 #include <cmath>
 #include <string>
@@ -23,6 +25,12 @@ double sampled_fraction(const UnitCell& cell, double depth, int n) {
   for (std::size_t k = 0; k < field.top.size(); ++k)
     touched += field.covered[k] && field.top[k] > 0.75e-3 - depth ? 1.0 : 0.0;
   return touched / static_cast<double>(field.top.size());
+}
+
+double touched_share(const TouchedFace& face, double pressure) {
+  const auto touched =
+      std::count_if(face.pressure.begin(), face.pressure.end(), [&](double p) { return p <= pressure; });
+  return static_cast<double>(touched) / static_cast<double>(face.pressure.size());
 }
 
 double fraction_with_gap(double gap, double pressure) {
@@ -146,4 +154,23 @@ TEST_CASE("a wider gap leaves less area at the same pressure, enough to move fri
   CAPTURE(pressure, narrow, wide);
   CHECK(wide < narrow);
   CHECK(1.0 - std::pow(wide / narrow, 0.14) > 0.01);  // mu ~ phi^0.14: slope s of the fitted Stribeck law
+}
+
+TEST_CASE("the patches of the picture are the touched fraction of the table at each pressure and angle",
+          "[contact][pictures]") {
+  const FabricGeometry& fabric = table1();
+  const ContactTables tables =
+      contact_tables(fabric, law, {.shear_angles_deg = {0, 30, 60}, .pressures = 15});
+  for (const double degrees : {0.0, 30.0, -30.0}) {
+    const double angle = degrees * std::acos(-1.0) / 180.0;
+    const TouchedFace face = touched_face(fabric, tables.compaction, angle, 200);
+    for (const double pressure : {1e2, 1e3, 1e4, 1e5, 1e6}) {
+      const double fraction = tables.contact.evaluate(pressure, angle).fraction;
+      CAPTURE(degrees, pressure, fraction);
+      CHECK(touched_share(face, pressure) == Approx(fraction).epsilon(0.02));
+      CHECK(touched_share(face, 1.2 * pressure) > fraction);
+    }
+    // A repeat of the sheared fabric: its edges keep their length along the warp and turn along the weft.
+    CHECK(std::atan2(face.along_weft[0], face.along_weft[1]) == Approx(angle).margin(1e-12));
+  }
 }

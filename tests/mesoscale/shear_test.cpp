@@ -50,7 +50,7 @@ TEST_CASE("closed tows resist as 2 t sin g times their lateral pressure", "[shea
   const FormingModels& m = table1_models();
   const double angle = radians(50.0), v0 = m.fabric.crossing.tow[0].fibre_fraction;
   const double v = v0 * (4.64 / 5.39) / std::cos(angle);
-  const double pressure = m.compaction.evaluate(v).stress - m.compaction.evaluate(v0).stress;
+  const double pressure = m.compaction.evaluate(v, v0).stress - m.compaction.evaluate(v0, v0).stress;
   CHECK(m.shear.flow(angle).lateral == Approx(2.0 * 0.75e-3 * std::sin(angle) * pressure).epsilon(1e-9));
 }
 

@@ -184,7 +184,18 @@ TEST_CASE("every default of the schema obeys its own rule", "[pipeline][config]"
     }
     if (key.path.starts_with("friction_test."))
       assignments.push_back("friction_test.data=" + (configs / "data/friction_table4.csv").string());
-    CHECK(format(problems_of(small_stamping, assignments)) == "");
+    // A cell of voxels stands alone.
+    const std::string voxels =
+        "heddle: 1\nname: voxels\ncell:\n  voxels: {file: " +
+        (configs.parent_path() / "tests/mesoscale/data/weave_64.raw").string() +
+        ", shape: [64, 64, 64], size: [10 mm, 10 mm, 1 mm], order: x-fastest}\n  boundary: periodic\n"
+        "  phases:\n    0: {bulk_modulus: 1667 MPa, shear_modulus: 557 MPa}\n"
+        "    1: {bulk_modulus: 8000 MPa, shear_modulus: 4000 MPa}\n"
+        "    2: {bulk_modulus: 8000 MPa, shear_modulus: 4000 MPa}\n"
+        "    3: {bulk_modulus: 8000 MPa, shear_modulus: 4000 MPa}\n"
+        "    4: {bulk_modulus: 8000 MPa, shear_modulus: 4000 MPa}\n";
+    CHECK(format(problems_of(key.path.starts_with("cell.voxels.") ? voxels : small_stamping, assignments)) ==
+          "");
   }
 }
 

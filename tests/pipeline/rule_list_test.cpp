@@ -168,6 +168,7 @@ const char* const of_fit = "friction/coupon_fit_test.cpp";
 const char* const of_design = "pipeline/discover/plan_test.cpp";
 const char* const of_discovery = "pipeline/discover/discovery_test.cpp";
 const char* const of_effects = "pipeline/discover/effects_test.cpp";
+const char* const of_texgen = "mesoscale/solid/texgen_test.cpp";
 const char* const of_outline = "macroscale/outline_test.cpp";
 
 const std::vector<Elsewhere> elsewhere{
@@ -403,6 +404,15 @@ const std::vector<Elsewhere> elsewhere{
     {"export.solid", "pipeline/study_test.cpp",
      "a solid cell goes out as a CalculiX deck, and without one the way out is named",
      "of a command, not of a configuration"},
+    {"cell.voxels.file.box", of_texgen,
+     "a deck that is none is refused with the rule it breaks and the place",
+     "of what the deck holds; texgen_deck.yaml breaks the first of these rules"},
+    {"cell.voxels.file.sets", of_texgen,
+     "a deck that is none is refused with the rule it breaks and the place",
+     "of what the deck holds; texgen_deck.yaml breaks the first of these rules"},
+    {"cell.voxels.orientations.fibre", of_texgen,
+     "a deck that is none is refused with the rule it breaks and the place",
+     "of what the file holds; texgen_deck.yaml breaks the first of these rules"},
     {"ccx.displacements", "mesoscale/solid/ccx_test.cpp", "a result of CalculiX that is cut short is refused",
      "of a result, not of a configuration"},
     {"study.missing", "pipeline/study_test.cpp", "a case without a study is refused with the way out",

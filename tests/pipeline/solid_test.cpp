@@ -91,6 +91,8 @@ TEST_CASE("a weave with solid writes its stiffness, from the cache to the same b
   const std::string report = read_text_file(scratch.path / "first/report.html");
   CHECK(report.find("The solid part") != std::string::npos);
   CHECK(report.find("The solid is balanced") != std::string::npos);
+  CHECK(report.find("thermal resultants of the ply against its trellis angle") != std::string::npos);
+  CHECK(report.find("Stiffness of the ply by trellis angle") != std::string::npos);
 
   options.output = scratch.path / "second";
   CHECK(pipeline::weave_case(options) == 0);
@@ -103,7 +105,10 @@ TEST_CASE("a weave without solid writes no stiffness and says nothing of it", "[
   const Scratch scratch;
   CHECK(pipeline::weave_case(options_for("unit_cell.yaml", scratch.path / "plain", {})) == 0);
   CHECK_FALSE(fs::exists(scratch.path / "plain/mesoscale/stiffness.json"));
-  CHECK(read_text_file(scratch.path / "plain/report.html").find("The solid part") == std::string::npos);
+  const std::string report = read_text_file(scratch.path / "plain/report.html");
+  CHECK(report.find("The solid part") == std::string::npos);
+  CHECK(report.find("Patches of the upper face that touch a flat tool, sheared by 30 degrees") !=
+        std::string::npos);
 }
 
 TEST_CASE("a voxel file is homogenised as a stack and as a plate", "[pipeline][solid]") {

@@ -155,3 +155,42 @@ TEST_CASE("mixed voxels bring the sheet of Table 1 within 0.3 % on 64 x 64 x 32"
   CHECK(std::abs(bent[2]) < 0.004);
   CHECK(order(bent) > 1.5);  // of the bending of few layers; not the order of fine grids
 }
+
+TEST_CASE("spheres of 10 and 20 percent stiffen a matrix as Mori and Tanaka say", "[solid][inclusion]") {
+  // Of spheres their estimate is Hashin and Shtrikman's lower bound; an array lies a little above.
+  const double share = GENERATE(0.1, 0.2);
+  const VoxelCell cell = sphere_cell(24, std::cbrt(0.75 * share / std::numbers::pi));
+  const SphereRatios filler = ratios_of(cell, {4.5e9, 0.3});
+  CAPTURE(share, filler.bulk, filler.shear);
+  CHECK(filler.bulk > 1.0);
+  CHECK(filler.bulk < 1.02);
+  CHECK(filler.shear == Approx(1.0).margin(0.04));
+}
+
+TEST_CASE("a checkerboard whose squares differ in bulk modulus alone has Hill's moduli, from above",
+          "[solid][inclusion][convergence]") {
+  // Exact for every arrangement (Hill 1964): C is isotropic, G stays, and the mean of 1 / (K + 4 G / 3) is
+  // its.
+  const double g = 1e9, k1 = 2e9, k2 = 12e9;
+  const double mean = 0.5 / (k1 + 4.0 / 3.0 * g) + 0.5 / (k2 + 4.0 / 3.0 * g);
+  const double exact = 1.0 / mean - 4.0 / 3.0 * g;
+  std::vector<double> error;
+  for (const int across : {2, 4, 8, 16}) {
+    const SampleCell cell = filled_cell({2 * across, 2 * across, 1}, box(1e-3, 1e-3, 1e-3),
+                                        {isotropic_stiffness(k1, g), isotropic_stiffness(k2, g)},
+                                        [&](int i, int j, int) { return (i / across + j / across) % 2; });
+    const PeriodicStiffness found = periodic_stiffness(cell.view(), {.tolerance = 1e-9});
+    REQUIRE(found.solver.converged);
+    const Matrix6& c = found.stiffness;
+    error.push_back((c.topLeftCorner<3, 3>().sum() / 9.0 - exact) / exact);
+    CHECK(c(3, 3) == Approx(g).epsilon(1e-9));  // no strain of shear along z meets the squares
+  }
+  CAPTURE(error);
+  std::cout << "checkerboard of equal shear moduli: bulk modulus off by " << error[0] << ", " << error[1]
+            << ", " << error[2] << ", " << error[3] << " at 2, 4, 8, 16 voxels a square\n";
+  for (std::size_t n = 1; n < error.size(); ++n) {
+    CHECK(error[n] > 0.0);
+    CHECK(error[n] < 0.6 * error[n - 1]);
+  }
+  CHECK(error.back() < 0.01);
+}
