@@ -19,7 +19,7 @@ struct SolveOptions {
   double lag_tolerance = 0.01;       ///< change of all friction force by one more update, relative
   double lag_limit = 0.05;           ///< a step whose friction still moves by more than this is rejected
   bool frictionless = false;         ///< friction off for this step
-  int newton_limit = 60;             ///< iterations a pass
+  int newton_limit = 200;            ///< iterations a pass; slip that sets in as a front takes one a node
   int lag_limit_iterations = 16;     ///< updates of the friction loads a step
   int line_search_limit = 30;
   std::function<bool()> stop = {};  ///< asked before each Newton iteration; true ends the step (empty: never)
