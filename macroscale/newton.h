@@ -24,4 +24,11 @@ struct Pass {
 Pass minimise(System& system, const StepData& step, Eigen::VectorXd& x, const SolveOptions& options,
               double tolerance, StepSummary& summary);
 
+/// Steps along the factors of the last iteration, as long as each halves the residual: a back-substitution
+/// costs a fraction of a factorisation, and far below the tolerance the result no longer depends on the
+/// iteration at which a search happened to end. (Slopes to small parameters are taken as differences of
+/// runs.) For the end of a step: what comes before it is searched again.
+/// @param x  where a search with at least one iteration converged
+void polish(System& system, const StepData& step, Eigen::VectorXd& x, StepSummary& summary);
+
 }  // namespace heddle::macroscale

@@ -179,6 +179,7 @@ StepSummary advance(System& system, const State& state, double dt, const std::ve
                                  100.0 * summary.lag_residual, summary.lag_iterations);
     return summary;
   }
+  if (summary.newton_iterations > 0) polish(system, step, x, summary);
   accept(system, step, x, end);
   summary.reason = fault_of(system, step, end);
   summary.converged = summary.reason.empty();
