@@ -18,8 +18,15 @@ namespace {
 using Eigen::Vector3d;
 using Eigen::VectorXd;
 
-double mean_contact_force(const System& system, const StepData& step, const VectorXd& x) {
+// What nodal residuals are measured by: how hard nodes press on the tools in the mean, and all of them on the
+// tools that are driven.
+struct ContactScale {
+  double mean = 0.0, driven = 0.0;  ///< [N]
+};
+
+ContactScale contact_scale(const System& system, const StepData& step, const VectorXd& x) {
   const Scene& scene = system.scene();
+  ContactScale scale;
   double sum = 0.0;
   int touching = 0;
   for (int k = 0; k < static_cast<int>(scene.tools.size()); ++k)
@@ -27,9 +34,20 @@ double mean_contact_force(const System& system, const StepData& step, const Vect
       const double p = system.tool_contact(step, x, k, i).normal.pressure;
       if (p <= 0.0) continue;
       sum += p * scene.blank.node_area[i];
+      if (scene.tools[k].motion == Motion::driven) scale.driven += p * scene.blank.node_area[i];
       ++touching;
     }
-  return touching > 0 ? sum / touching : 0.0;
+  if (touching > 0) scale.mean = sum / touching;
+  return scale;
+}
+
+// A share of the mean nodal contact force. Where much binder force rubs little (mu near zero), residuals far
+// below it still add up to the punch force: then a hundredth of that, spread over the nodes, counts, down to
+// a fiftieth of the first.
+double residual_limit(const SolveOptions& options, const ContactScale& scale, int nodes) {
+  double relative = options.relative_tolerance * scale.mean;
+  if (scale.driven > 0.0) relative = std::clamp(1e-2 * scale.driven / nodes, 0.02 * relative, relative);
+  return std::max(options.force_tolerance, relative);
 }
 
 // Positions, velocities and angles at the end of a step that reached x; contact remembers what it did before.
@@ -138,8 +156,8 @@ StepSummary advance(System& system, const State& state, double dt, const std::ve
   VectorXd& x = step.iterate;
   if (prescribe) prescribe(state.time + dt, x);
   StepSummary summary;
-  const double tolerance = std::max(
-      options.force_tolerance, options.relative_tolerance * mean_contact_force(system, old_place, state.x));
+  const double tolerance =
+      residual_limit(options, contact_scale(system, old_place, state.x), system.scene().blank.nodes());
   const bool rubs = system.scene().friction && !step.frictionless;
   const auto search = [&](double limit) {
     const Pass pass = minimise(system, step, x, options, limit, summary);
