@@ -174,7 +174,8 @@ Pass minimise(System& system, const StepData& step, VectorXd& x, const SolveOpti
               double tolerance, StepSummary& summary) {
   Position at, trial;
   system.evaluate(step, x, at);
-  if (std::string lost = node_beyond_tools(system, at); !lost.empty()) return {false, std::move(lost)};
+  if (std::string lost = node_beyond_tools(system, at); !lost.empty())
+    return {false, std::move(lost), false, FailureKind::lost_tool};
   const bool rubs = system.scene().friction && !step.frictionless;
   // Slip is resolved to a share of what the smoothing of friction lets creep in a step.
   const double least = rubs ? std::min(options.stagnation, 1e-3 * system.scene().slip_smoothing * step.dt)
@@ -194,7 +195,9 @@ Pass minimise(System& system, const StepData& step, VectorXd& x, const SolveOpti
                                  options.newton_limit, summary.residual, summary.worst)};
 
     Direction direction = newton_direction(system, step, at, g, choice.filter());
-    if (!direction.found) return {false, "no descent direction: the matrix stays indefinite under any shift"};
+    if (!direction.found)
+      return {false, "no descent direction: the matrix stays indefinite under any shift", false,
+              FailureKind::indefinite};
     ++summary.newton_iterations;
     summary.factorisations += direction.factorisations;
     const double size = direction.dx.cwiseAbs().maxCoeff();
@@ -204,8 +207,8 @@ Pass minimise(System& system, const StepData& step, VectorXd& x, const SolveOpti
         search(system, step, options, direction.dx, g.dot(direction.dx), at, trial, energy);
     if (found.alpha == 0.0) {
       if (choice.fall_back(direction.filter)) continue;
-      return {worst.value <= 10.0 * tolerance,
-              found.lost.empty() ? "line search found no decrease" : found.lost};
+      if (found.lost.empty()) return {worst.value <= 10.0 * tolerance, "line search found no decrease"};
+      return {worst.value <= 10.0 * tolerance, found.lost, false, FailureKind::lost_tool};
     }
     choice.after(direction.filter, found.alpha, capped);
     x = at.x;

@@ -13,7 +13,8 @@ namespace heddle::macroscale {
 struct Pass {
   bool converged = false;
   std::string reason;
-  bool stopped = false;  ///< SolveOptions::stop said so
+  bool stopped = false;                    ///< SolveOptions::stop said so
+  FailureKind kind = FailureKind::search;  ///< where not converged
 };
 
 /// Newton's method with line search on the incremental potential at frozen friction loads, from x.

@@ -28,8 +28,9 @@ struct SolveOptions {
 /// How one time step ended. Not converging is a result; a value that is not finite throws NumericalError.
 struct StepSummary {
   bool converged = false;
-  bool stopped = false;  ///< SolveOptions::stop said so
-  std::string reason;    ///< "converged", or what went wrong in words
+  bool stopped = false;                    ///< SolveOptions::stop said so
+  std::string reason;                      ///< "converged", or what went wrong in words
+  FailureKind kind = FailureKind::search;  ///< of what went wrong
   int newton_iterations = 0;
   int factorisations = 0;  ///< those of matrices that turned out indefinite included
   int lag_iterations = 0;
