@@ -36,8 +36,7 @@ double smoothed_coefficient(const FrictionSettings& settings, const FrictionPoin
   return law_at(settings, point, speed).mu * ramp(speed / settings.smoothing).value;
 }
 
-// Gauss-Legendre on [-1, 1], 4 and 2 points (weights 1).
-constexpr double two_gauss_points = 0.5773502691896258;
+// Gauss-Legendre on [-1, 1].
 constexpr std::array<double, 4> gauss_point = {-0.8611363115940526, -0.3399810435848563, 0.3399810435848563,
                                                0.8611363115940526};
 constexpr std::array<double, 4> gauss_weight = {0.3478548451374538, 0.6521451548625461, 0.6521451548625461,
@@ -46,13 +45,9 @@ constexpr std::array<double, 4> gauss_weight = {0.3478548451374538, 0.6521451548
 double integral_of_coefficient(const FrictionSettings& settings, const FrictionPoint& point, double from,
                                double to) {
   const double middle = 0.5 * (from + to), half = 0.5 * (to - from);
-  const auto at = [&](double share) { return smoothed_coefficient(settings, point, middle + half * share); };
-  // Laws vary over their own slip speed: two points leave 1e-8 of the change here, and the law is what costs.
-  constexpr double near = 0.1;
-  if (std::abs(to - from) <= near * std::max(from, to))
-    return half * (at(-two_gauss_points) + at(two_gauss_points));
   double sum = 0.0;
-  for (std::size_t k = 0; k < gauss_point.size(); ++k) sum += gauss_weight[k] * at(gauss_point[k]);
+  for (std::size_t k = 0; k < gauss_point.size(); ++k)
+    sum += gauss_weight[k] * smoothed_coefficient(settings, point, middle + half * gauss_point[k]);
   return half * sum;
 }
 
@@ -89,32 +84,52 @@ friction::Friction law_at(const FrictionSettings& settings, const FrictionPoint&
   return friction::evaluate(*settings.model, context, point.memory);
 }
 
+FrictionResponse friction_response(const FrictionSettings& settings, const FrictionPoint& point,
+                                   const Vector3d& v) {
+  FrictionResponse at;
+  at.slip = slip_velocity(point, v);
+  at.speed = at.slip.norm();
+  const Resistance r = resistance(settings, point, at.speed);
+  at.over_speed = r.over_speed;
+  at.slope = r.slope;
+  return at;
+}
+
 Vector3d friction_force(const FrictionSettings& settings, const FrictionPoint& point, const Vector3d& v) {
-  const Vector3d slip = slip_velocity(point, v);
-  return point.load * resistance(settings, point, slip.norm()).over_speed * slip;
+  return friction_force(point, friction_response(settings, point, v));
+}
+
+Matrix3d friction_tangent(const FrictionSettings& settings, const FrictionPoint& point,
+                          const FrictionResponse& at, FrictionTangent kind) {
+  const double slope = kind == FrictionTangent::exact ? at.slope : std::max(at.slope, 0.0);
+  const Matrix3d tangent_plane = Matrix3d::Identity() - point.normal * point.normal.transpose();
+  if (at.speed < 1e-9 * settings.smoothing || kind == FrictionTangent::secant)
+    return point.load * at.over_speed * tangent_plane;
+  const Vector3d direction = at.slip / at.speed;
+  return point.load *
+         (at.over_speed * tangent_plane + (slope - at.over_speed) * direction * direction.transpose());
 }
 
 Matrix3d friction_tangent(const FrictionSettings& settings, const FrictionPoint& point, const Vector3d& v,
                           FrictionTangent kind) {
-  const Vector3d slip = slip_velocity(point, v);
-  const double speed = slip.norm();
-  Resistance r = resistance(settings, point, speed);
-  if (kind != FrictionTangent::exact) r.slope = std::max(r.slope, 0.0);
-  const Matrix3d tangent_plane = Matrix3d::Identity() - point.normal * point.normal.transpose();
-  if (speed < 1e-9 * settings.smoothing || kind == FrictionTangent::secant)
-    return point.load * r.over_speed * tangent_plane;
-  const Vector3d direction = slip / speed;
-  return point.load *
-         (r.over_speed * tangent_plane + (r.slope - r.over_speed) * direction * direction.transpose());
+  return friction_tangent(settings, point, friction_response(settings, point, v), kind);
 }
 
-double friction_power_difference(const FrictionSettings& settings, const FrictionPoint& point, double from,
-                                 double to) {
+double friction_power_difference(const FrictionSettings& settings, const FrictionPoint& point,
+                                 const FrictionResponse& from, const FrictionResponse& to) {
+  const double way = to.speed - from.speed;
   // The ramp's end is the only kink: integrate on each side of it.
-  const double knee = std::clamp(settings.smoothing, std::min(from, to), std::max(from, to));
+  const double knee =
+      std::clamp(settings.smoothing, std::min(from.speed, to.speed), std::max(from.speed, to.speed));
+  // Laws vary over their own slip speed: this near, ends alone leave 1e-7 of the change.
+  constexpr double near = 0.1;
+  const bool crosses = knee != from.speed && knee != to.speed;
+  if (!crosses && std::abs(way) <= near * std::max(from.speed, to.speed))
+    return point.load * (0.5 * way * (from.over_speed * from.speed + to.over_speed * to.speed) +
+                         way * way / 12.0 * (from.slope - to.slope));
   double sum = 0.0;
-  if (knee != from) sum += integral_of_coefficient(settings, point, from, knee);
-  if (knee != to) sum += integral_of_coefficient(settings, point, knee, to);
+  if (knee != from.speed) sum += integral_of_coefficient(settings, point, from.speed, knee);
+  if (knee != to.speed) sum += integral_of_coefficient(settings, point, knee, to.speed);
   return point.load * sum;
 }
 

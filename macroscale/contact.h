@@ -46,7 +46,20 @@ Eigen::Vector3d slip_velocity(const FrictionPoint& point, const Eigen::Vector3d&
 /// The law at a slip speed.
 friction::Friction law_at(const FrictionSettings& settings, const FrictionPoint& point, double speed);
 
+/// One friction point at one velocity, its law looked up once.
+struct FrictionResponse {
+  Eigen::Vector3d slip{0, 0, 0};  ///< [m/s]
+  double speed = 0.0;             ///< U = |slip| [m/s]
+  double over_speed = 0.0;        ///< g(U) / U [s/m], finite at rest
+  double slope = 0.0;             ///< dg/dU [s/m]
+};
+FrictionResponse friction_response(const FrictionSettings& settings, const FrictionPoint& point,
+                                   const Eigen::Vector3d& v);
+
 /// Force on the tool's counterpart that resists slip, as gradient dD/dv / dt: points along the slip [N].
+inline Eigen::Vector3d friction_force(const FrictionPoint& point, const FrictionResponse& at) {
+  return point.load * at.over_speed * at.slip;
+}
 Eigen::Vector3d friction_force(const FrictionSettings& settings, const FrictionPoint& point,
                                const Eigen::Vector3d& v);
 
@@ -57,12 +70,14 @@ enum class FrictionTangent { exact, convex, secant };
 
 /// Derivative of the friction force in v [N s/m], symmetric.
 Eigen::Matrix3d friction_tangent(const FrictionSettings& settings, const FrictionPoint& point,
+                                 const FrictionResponse& at, FrictionTangent kind);
+Eigen::Matrix3d friction_tangent(const FrictionSettings& settings, const FrictionPoint& point,
                                  const Eigen::Vector3d& v, FrictionTangent kind);
 
-/// N Int g dU from one slip speed to another [W]; times dt this is the change of D. Gauss quadrature between
-/// the two speeds, so the error vanishes with their distance and a line search near the solution sees no
-/// noise.
-double friction_power_difference(const FrictionSettings& settings, const FrictionPoint& point, double from,
-                                 double to);
+/// N Int g dU from one slip speed to another [W]; times dt this is the change of D. Where the two are near
+/// each other Hermite's rule takes it from values and slopes at both ends, otherwise Gauss's from four points
+/// between: the error vanishes with the distance, and a line search near the solution sees no noise.
+double friction_power_difference(const FrictionSettings& settings, const FrictionPoint& point,
+                                 const FrictionResponse& from, const FrictionResponse& to);
 
 }  // namespace heddle::macroscale

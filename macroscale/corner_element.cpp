@@ -22,37 +22,15 @@ constexpr double rate_floor = 1e-3;
 // rejected (solve).
 constexpr double sine_limit = 0.99999;
 
-struct Kinematics {
-  double la, lb, e1, e2, s, c;
-  Vector3d p, q;
-};
-
-Kinematics kinematics(const CornerLaw& law, const Vector3d& a, const Vector3d& b) {
-  Kinematics k;
-  k.la = a.norm();
-  k.lb = b.norm();
-  k.p = a / k.la;
-  k.q = b / k.lb;
-  k.e1 = k.la / law.length_warp - 1.0;
-  k.e2 = k.lb / law.length_weft - 1.0;
-  k.s = std::clamp(k.p.dot(k.q), -sine_limit, sine_limit);
-  k.c = std::sqrt(1.0 - k.s * k.s);
-  return k;
-}
-
-struct ScalarLaw {
-  double energy, first, second;  ///< in s
-};
-
 // Psi(s): the stored curve is its slope for s >= 0, odd in s.
-ScalarLaw shear_law(const CornerLaw& law, double s) {
+CornerScalar shear_law(const CornerLaw& law, double s) {
   const double size = std::abs(s);
   const Curve::Value slope = law.fabric->shear_stress.evaluate(size);
   return {law.fabric->shear_stress.integral(size), std::copysign(slope.y, s), slope.slope};
 }
 
 // dt R(gdot) as a function of s, through gamma = asin(s).
-ScalarLaw rate_law(const CornerLaw& law, const Kinematics& k, double angle_before) {
+CornerScalar rate_law(const CornerLaw& law, const CornerPoint& k, double angle_before) {
   if (law.rate_consistency == 0.0 || law.time_step == 0.0) return {0.0, 0.0, 0.0};
   const double n = law.rate_index;
   const double rate = (std::asin(k.s) - angle_before) / law.time_step;
@@ -68,10 +46,10 @@ ScalarLaw rate_law(const CornerLaw& law, const Kinematics& k, double angle_befor
 }
 
 // ds/da and ds/db.
-Vector3d sine_slope_a(const Kinematics& k) {
+Vector3d sine_slope_a(const CornerPoint& k) {
   return (k.q - k.s * k.p) / k.la;
 }
-Vector3d sine_slope_b(const Kinematics& k) {
+Vector3d sine_slope_b(const CornerPoint& k) {
   return (k.p - k.s * k.q) / k.lb;
 }
 
@@ -137,33 +115,51 @@ double corner_angle(const Vector3d& a, const Vector3d& b) {
   return std::asin(std::clamp(a.dot(b) / (a.norm() * b.norm()), -1.0, 1.0));
 }
 
+CornerPoint corner_point(const CornerLaw& law, const Vector3d& a, const Vector3d& b, double angle_before) {
+  CornerPoint k;
+  k.la = a.norm();
+  k.lb = b.norm();
+  k.p = a / k.la;
+  k.q = b / k.lb;
+  k.s = std::clamp(k.p.dot(k.q), -sine_limit, sine_limit);
+  k.c = std::sqrt(1.0 - k.s * k.s);
+  k.tension = law.fabric->tension_energy.evaluate(k.la / law.length_warp - 1.0, k.lb / law.length_weft - 1.0);
+  k.shear = shear_law(law, k.s);
+  k.rate = rate_law(law, k, angle_before);
+  return k;
+}
+
+CornerEnergy corner_energy(const CornerLaw& law, const CornerPoint& k) {
+  return {law.area * k.tension.f, law.area * k.shear.energy, law.area * k.rate.energy};
+}
+
 CornerEnergy corner_energy(const CornerLaw& law, const Vector3d& a, const Vector3d& b, double angle_before) {
-  const Kinematics k = kinematics(law, a, b);
-  const auto tension = law.fabric->tension_energy.evaluate(k.e1, k.e2);
-  return {law.area * tension.f, law.area * shear_law(law, k.s).energy,
-          law.area * rate_law(law, k, angle_before).energy};
+  return corner_energy(law, corner_point(law, a, b, angle_before));
+}
+
+CornerGradient corner_gradient(const CornerLaw& law, const CornerPoint& k) {
+  const Vector3d sa = law.area * sine_slope_a(k), sb = law.area * sine_slope_b(k);
+  return {law.area * k.tension.fx / law.length_warp * k.p,
+          law.area * k.tension.fy / law.length_weft * k.q,
+          k.shear.first * sa,
+          k.shear.first * sb,
+          k.rate.first * sa,
+          k.rate.first * sb};
 }
 
 CornerGradient corner_gradient(const CornerLaw& law, const Vector3d& a, const Vector3d& b,
                                double angle_before) {
-  const Kinematics k = kinematics(law, a, b);
-  const auto tension = law.fabric->tension_energy.evaluate(k.e1, k.e2);
-  const Vector3d sa = law.area * sine_slope_a(k), sb = law.area * sine_slope_b(k);
-  const double shear = shear_law(law, k.s).first, rate = rate_law(law, k, angle_before).first;
-  return {law.area * tension.fx / law.length_warp * k.p,
-          law.area * tension.fy / law.length_weft * k.q,
-          shear * sa,
-          shear * sb,
-          rate * sa,
-          rate * sb};
+  return corner_gradient(law, corner_point(law, a, b, angle_before));
 }
 
 CornerHessian corner_hessian(const CornerLaw& law, const Vector3d& a, const Vector3d& b, double angle_before,
                              Filter filter) {
-  const Kinematics k = kinematics(law, a, b);
-  const auto w = law.fabric->tension_energy.evaluate(k.e1, k.e2);
-  const ScalarLaw shear = shear_law(law, k.s), rate = rate_law(law, k, angle_before);
-  const double f1 = shear.first + rate.first, f2 = shear.second + rate.second;
+  return corner_hessian(law, corner_point(law, a, b, angle_before), filter);
+}
+
+CornerHessian corner_hessian(const CornerLaw& law, const CornerPoint& k, Filter filter) {
+  const Surface::Value& w = k.tension;
+  const double f1 = k.shear.first + k.rate.first, f2 = k.shear.second + k.rate.second;
 
   // Frame of the corner: t1 = p, t2 in the plane of both tows, t3 normal. Out of plane the two edge
   // components decouple from the four in-plane ones, so a 2 x 2 and a 4 x 4 block hold everything.

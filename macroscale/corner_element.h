@@ -29,12 +29,30 @@ inline CornerLaw trimmed(CornerLaw law, double share) {
   return law;
 }
 
+/// A scalar law with its slopes in s = sin(gamma).
+struct CornerScalar {
+  double energy = 0.0, first = 0.0, second = 0.0;  ///< per area [N/m]
+};
+
+/// All that energy, forces and stiffness of a corner share: its kinematics, each law looked up once.
+struct CornerPoint {
+  double la = 1.0, lb = 1.0;                 ///< |a|, |b| [m]
+  double s = 0.0, c = 1.0;                   ///< sin and cos of gamma
+  Eigen::Vector3d p{1, 0, 0}, q{0, 1, 0};    ///< directions of a and b
+  Surface::Value tension{0, 0, 0, 0, 0, 0};  ///< w(e1, e2) with its slopes [N/m]
+  CornerScalar shear, rate;
+};
+
+CornerPoint corner_point(const CornerLaw& law, const Eigen::Vector3d& a, const Eigen::Vector3d& b,
+                         double angle_before);
+
 /// Energies of one corner [J].
 struct CornerEnergy {
   double tension = 0.0, shear = 0.0, rate = 0.0;
   double total() const { return tension + shear + rate; }
 };
 
+CornerEnergy corner_energy(const CornerLaw& law, const CornerPoint& point);
 CornerEnergy corner_energy(const CornerLaw& law, const Eigen::Vector3d& a, const Eigen::Vector3d& b,
                            double angle_before);
 
@@ -45,6 +63,7 @@ struct CornerGradient {
   Eigen::Vector3d b() const { return tension_b + shear_b + rate_b; }
 };
 
+CornerGradient corner_gradient(const CornerLaw& law, const CornerPoint& point);
 CornerGradient corner_gradient(const CornerLaw& law, const Eigen::Vector3d& a, const Eigen::Vector3d& b,
                                double angle_before);
 
@@ -57,6 +76,7 @@ struct CornerHessian {
 /// `bounding`: the same, and friction by its secant, a quadratic that lies above its potential.
 enum class Filter { none, positive, bounding };
 
+CornerHessian corner_hessian(const CornerLaw& law, const CornerPoint& point, Filter filter);
 CornerHessian corner_hessian(const CornerLaw& law, const Eigen::Vector3d& a, const Eigen::Vector3d& b,
                              double angle_before, Filter filter);
 

@@ -35,12 +35,12 @@ void demand_finite(const System& system, const VectorXd& values, const char* qua
 
 // The first node whose distance to a tool is not known because it lies too deep inside or off the room that
 // the tool's distances cover, in words; "" if there is none. Contact has no energy there.
-std::string node_beyond_tools(const System& system, const StepData& step, const VectorXd& x) {
+std::string node_beyond_tools(const System& system, const Position& position) {
   const Scene& scene = system.scene();
   for (int k = 0; k < static_cast<int>(scene.tools.size()); ++k)
     for (int i = 0; i < scene.blank.nodes(); ++i) {
-      if (std::isfinite(system.tool_contact(step, x, k, i).surface.distance)) continue;
-      const Vector3d at = 1e3 * x.segment<3>(3 * i);
+      if (std::isfinite(position.contacts[k][i].surface.distance)) continue;
+      const Vector3d at = 1e3 * position.x.segment<3>(3 * i);
       return fmt::format(
           "node {} at ({:.3g}, {:.3g}, {:.3g}) mm is deeper in the {} or further off it than its distances "
           "are known",
@@ -58,11 +58,11 @@ struct Direction {
 };
 
 // The Hessian asked for; projected where the exact one is not positive definite, then with a growing shift.
-Direction newton_direction(System& system, const StepData& step, const VectorXd& x, const VectorXd& g,
+Direction newton_direction(System& system, const StepData& step, const Position& at, const VectorXd& g,
                            Filter filter) {
   Direction direction;
   const auto attempt = [&](Filter kind, double shift) {
-    system.assemble(step, x, kind, shift);
+    system.assemble(step, at, kind, shift);
     ++direction.factorisations;
     if (!system.solver().factorise()) return false;
     direction.dx = -g;
@@ -87,23 +87,23 @@ struct LineSearch {
   std::string lost;    ///< the node that kept a trial from having an energy, in words
 };
 
-// Armijo's rule by halving. Moves x and energy along dx where it holds.
+// Armijo's rule by halving. Moves `at` and energy along dx where it holds; `trial` is room to work in.
 LineSearch search(const System& system, const StepData& step, const SolveOptions& options, const VectorXd& dx,
-                  double slope, VectorXd& x, double& energy) {
+                  double slope, Position& at, Position& trial, double& energy) {
   LineSearch found;
   double alpha = 1.0;
   for (int k = 0; k < options.line_search_limit; ++k, alpha *= 0.5) {
-    VectorXd trial = x + alpha * dx;
+    system.evaluate(step, at.x + alpha * dx, trial);
     const double trial_energy = system.potential(step, trial).total();
-    const double change = trial_energy - energy + system.friction_difference(step, x, trial);
+    const double change = trial_energy - energy + system.friction_difference(step, at, trial);
     const double rounding = 1e-13 * (std::abs(energy) + 1.0);
     if (std::isfinite(change) && change <= 1e-4 * alpha * slope + rounding) {
-      x = std::move(trial);
+      std::swap(at, trial);
       energy = trial_energy;
       found.alpha = alpha;
       return found;
     }
-    if (!std::isfinite(change)) found.lost = node_beyond_tools(system, step, trial);
+    if (!std::isfinite(change)) found.lost = node_beyond_tools(system, trial);
   }
   return found;
 }
@@ -149,16 +149,19 @@ class Choice {
   int patience_ = 1, left_ = 0;
 };
 
-// Steps along the factors of the last iteration, as long as each halves the residual: a back-substitution
-// costs a fraction of a factorisation, and far below the tolerance the result no longer depends on the
-// iteration at which a search happened to end. (Slopes to small parameters are taken as differences of runs.)
-void polish(System& system, const StepData& step, VectorXd& x, VectorXd g, StepSummary& summary) {
+}  // namespace
+
+void polish(System& system, const StepData& step, VectorXd& x, StepSummary& summary) {
   constexpr int most = 3;
+  Position at;
+  system.evaluate(step, x, at);
+  VectorXd g = system.gradient(step, at);
   for (int k = 0; k < most; ++k) {
     VectorXd trial = -g;
     system.solver().solve({trial.data(), static_cast<std::size_t>(trial.size())});
     trial += x;
-    g = system.gradient(step, trial);
+    system.evaluate(step, trial, at);
+    g = system.gradient(step, at);
     const Largest left = largest(g);
     if (!(left.value < 0.5 * summary.residual)) return;
     x = std::move(trial);
@@ -167,47 +170,49 @@ void polish(System& system, const StepData& step, VectorXd& x, VectorXd g, StepS
   }
 }
 
-}  // namespace
-
 Pass minimise(System& system, const StepData& step, VectorXd& x, const SolveOptions& options,
               double tolerance, StepSummary& summary) {
-  if (std::string lost = node_beyond_tools(system, step, x); !lost.empty()) return {false, std::move(lost)};
+  Position at, trial;
+  system.evaluate(step, x, at);
+  if (std::string lost = node_beyond_tools(system, at); !lost.empty())
+    return {false, std::move(lost), false, FailureKind::lost_tool};
   const bool rubs = system.scene().friction && !step.frictionless;
   // Slip is resolved to a share of what the smoothing of friction lets creep in a step.
   const double least = rubs ? std::min(options.stagnation, 1e-3 * system.scene().slip_smoothing * step.dt)
                             : options.stagnation;
   Choice choice(rubs);
-  VectorXd g = system.gradient(step, x);
-  double energy = system.potential(step, x).total();
+  VectorXd g = system.gradient(step, at);
+  double energy = system.potential(step, at).total();
   for (int iteration = 0;; ++iteration) {
     if (options.stop && options.stop()) return {false, "stopped from outside", true};
     demand_finite(system, g, "residual force", step.start->time + step.dt);
     const Largest worst = largest(g);
     summary.residual = worst.value;
     summary.worst = name_of(system, worst.unknown);
-    if (worst.value <= tolerance) {
-      if (iteration > 0) polish(system, step, x, g, summary);
-      return {true, "converged"};
-    }
+    if (worst.value <= tolerance) return {true, "converged"};
     if (iteration == options.newton_limit)
       return {false, fmt::format("{} Newton iterations left a residual of {:.3g} N at {}",
                                  options.newton_limit, summary.residual, summary.worst)};
 
-    Direction direction = newton_direction(system, step, x, g, choice.filter());
-    if (!direction.found) return {false, "no descent direction: the matrix stays indefinite under any shift"};
+    Direction direction = newton_direction(system, step, at, g, choice.filter());
+    if (!direction.found)
+      return {false, "no descent direction: the matrix stays indefinite under any shift", false,
+              FailureKind::indefinite};
     ++summary.newton_iterations;
     summary.factorisations += direction.factorisations;
     const double size = direction.dx.cwiseAbs().maxCoeff();
     const bool capped = size > options.largest_increment;
     if (capped) direction.dx *= options.largest_increment / size;
-    const LineSearch found = search(system, step, options, direction.dx, g.dot(direction.dx), x, energy);
+    const LineSearch found =
+        search(system, step, options, direction.dx, g.dot(direction.dx), at, trial, energy);
     if (found.alpha == 0.0) {
       if (choice.fall_back(direction.filter)) continue;
-      return {worst.value <= 10.0 * tolerance,
-              found.lost.empty() ? "line search found no decrease" : found.lost};
+      if (found.lost.empty()) return {worst.value <= 10.0 * tolerance, "line search found no decrease"};
+      return {worst.value <= 10.0 * tolerance, found.lost, false, FailureKind::lost_tool};
     }
     choice.after(direction.filter, found.alpha, capped);
-    g = system.gradient(step, x);
+    x = at.x;
+    g = system.gradient(step, at);
     if (found.alpha * direction.dx.cwiseAbs().maxCoeff() >= least) continue;
     const Largest left = largest(g);
     if (left.value <= tolerance || choice.fall_back(direction.filter)) continue;

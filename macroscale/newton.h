@@ -13,7 +13,8 @@ namespace heddle::macroscale {
 struct Pass {
   bool converged = false;
   std::string reason;
-  bool stopped = false;  ///< SolveOptions::stop said so
+  bool stopped = false;                    ///< SolveOptions::stop said so
+  FailureKind kind = FailureKind::search;  ///< where not converged
 };
 
 /// Newton's method with line search on the incremental potential at frozen friction loads, from x.
@@ -23,5 +24,12 @@ struct Pass {
 /// @throws NumericalError  if a residual is not finite; the message names the node
 Pass minimise(System& system, const StepData& step, Eigen::VectorXd& x, const SolveOptions& options,
               double tolerance, StepSummary& summary);
+
+/// Steps along the factors of the last iteration, as long as each halves the residual: a back-substitution
+/// costs a fraction of a factorisation, and far below the tolerance the result no longer depends on the
+/// iteration at which a search happened to end. (Slopes to small parameters are taken as differences of
+/// runs.) For the end of a step: what comes before it is searched again.
+/// @param x  where a search with at least one iteration converged
+void polish(System& system, const StepData& step, Eigen::VectorXd& x, StepSummary& summary);
 
 }  // namespace heddle::macroscale

@@ -18,8 +18,15 @@ namespace {
 using Eigen::Vector3d;
 using Eigen::VectorXd;
 
-double mean_contact_force(const System& system, const StepData& step, const VectorXd& x) {
+// What nodal residuals are measured by: how hard nodes press on the tools in the mean, and all of them on the
+// tools that are driven.
+struct ContactScale {
+  double mean = 0.0, driven = 0.0;  ///< [N]
+};
+
+ContactScale contact_scale(const System& system, const StepData& step, const VectorXd& x) {
   const Scene& scene = system.scene();
+  ContactScale scale;
   double sum = 0.0;
   int touching = 0;
   for (int k = 0; k < static_cast<int>(scene.tools.size()); ++k)
@@ -27,9 +34,20 @@ double mean_contact_force(const System& system, const StepData& step, const Vect
       const double p = system.tool_contact(step, x, k, i).normal.pressure;
       if (p <= 0.0) continue;
       sum += p * scene.blank.node_area[i];
+      if (scene.tools[k].motion == Motion::driven) scale.driven += p * scene.blank.node_area[i];
       ++touching;
     }
-  return touching > 0 ? sum / touching : 0.0;
+  if (touching > 0) scale.mean = sum / touching;
+  return scale;
+}
+
+// A share of the mean nodal contact force. Where much binder force rubs little (mu near zero), residuals far
+// below it still add up to the punch force: then a hundredth of that, spread over the nodes, counts, down to
+// a fiftieth of the first.
+double residual_limit(const SolveOptions& options, const ContactScale& scale, int nodes) {
+  double relative = options.relative_tolerance * scale.mean;
+  if (scale.driven > 0.0) relative = std::clamp(1e-2 * scale.driven / nodes, 0.02 * relative, relative);
+  return std::max(options.force_tolerance, relative);
 }
 
 // Positions, velocities and angles at the end of a step that reached x; contact remembers what it did before.
@@ -76,7 +94,12 @@ void accept(const System& system, const StepData& step, const VectorXd& x, State
 
 // What makes a converged state unusable, or "": a corner that closed or turned over, fabric pressed beyond
 // its table.
-std::string fault_of(const System& system, const StepData& step, const State& end) {
+struct Fault {
+  std::string reason;
+  FailureKind kind = FailureKind::search;
+};
+
+Fault fault_of(const System& system, const StepData& step, const State& end) {
   const Scene& scene = system.scene();
   constexpr double closed = 89.0 * std::numbers::pi / 180.0;
   for (std::size_t q = 0; q < scene.blank.quads.size(); ++q) {
@@ -87,18 +110,20 @@ std::string fault_of(const System& system, const StepData& step, const State& en
         return (s.node(c.along_warp) - s.node(c.node)).cross(s.node(c.along_weft) - s.node(c.node)).eval();
       };
       if (std::abs(end.corner_angle[4 * q + k]) > closed || normal(end).dot(normal(*step.start)) < 0.0)
-        return fmt::format("the corner at node {} closed or turned over (shear {:.1f} deg)", c.node,
-                           end.corner_angle[4 * q + k] * 180.0 / std::numbers::pi);
+        return {fmt::format("the corner at node {} closed or turned over (shear {:.1f} deg)", c.node,
+                            end.corner_angle[4 * q + k] * 180.0 / std::numbers::pi),
+                FailureKind::folded};
     }
   }
   for (int k = 0; k < static_cast<int>(scene.tools.size()); ++k)
     for (int i = 0; i < scene.blank.nodes(); ++i) {
       const double approach = system.tool_contact(step, end.x, k, i).normal.approach;
       if (approach > 0.5 * scene.fabric->thickness)
-        return fmt::format("node {} is pressed {:.3f} mm into the {}, through the middle of the fabric", i,
-                           1e3 * approach, name_of(scene.tools[k].role));
+        return {fmt::format("node {} is pressed {:.3f} mm into the {}, through the middle of the fabric", i,
+                            1e3 * approach, name_of(scene.tools[k].role)),
+                FailureKind::pressed_through};
     }
-  return "";
+  return {};
 }
 
 }  // namespace
@@ -138,12 +163,13 @@ StepSummary advance(System& system, const State& state, double dt, const std::ve
   VectorXd& x = step.iterate;
   if (prescribe) prescribe(state.time + dt, x);
   StepSummary summary;
-  const double tolerance = std::max(
-      options.force_tolerance, options.relative_tolerance * mean_contact_force(system, old_place, state.x));
+  const double tolerance =
+      residual_limit(options, contact_scale(system, old_place, state.x), system.scene().blank.nodes());
   const bool rubs = system.scene().friction && !step.frictionless;
   const auto search = [&](double limit) {
     const Pass pass = minimise(system, step, x, options, limit, summary);
     summary.reason = pass.reason;
+    summary.kind = pass.kind;
     summary.stopped = pass.stopped;
     return pass.converged;
   };
@@ -177,10 +203,14 @@ StepSummary advance(System& system, const State& state, double dt, const std::ve
   if (summary.lag_residual > options.lag_limit && change.largest > tolerance && !summary.swings) {
     summary.reason = fmt::format("friction loads still move by {:.1f} % after {} updates",
                                  100.0 * summary.lag_residual, summary.lag_iterations);
+    summary.kind = FailureKind::friction_loads;
     return summary;
   }
+  if (summary.newton_iterations > 0) polish(system, step, x, summary);
   accept(system, step, x, end);
-  summary.reason = fault_of(system, step, end);
+  const Fault fault = fault_of(system, step, end);
+  summary.reason = fault.reason;
+  summary.kind = fault.kind;
   summary.converged = summary.reason.empty();
   if (summary.converged) summary.reason = "converged";
   return summary;

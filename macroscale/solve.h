@@ -19,7 +19,7 @@ struct SolveOptions {
   double lag_tolerance = 0.01;       ///< change of all friction force by one more update, relative
   double lag_limit = 0.05;           ///< a step whose friction still moves by more than this is rejected
   bool frictionless = false;         ///< friction off for this step
-  int newton_limit = 60;             ///< iterations a pass
+  int newton_limit = 200;            ///< iterations a pass; slip that sets in as a front takes one a node
   int lag_limit_iterations = 16;     ///< updates of the friction loads a step
   int line_search_limit = 30;
   std::function<bool()> stop = {};  ///< asked before each Newton iteration; true ends the step (empty: never)
@@ -28,8 +28,9 @@ struct SolveOptions {
 /// How one time step ended. Not converging is a result; a value that is not finite throws NumericalError.
 struct StepSummary {
   bool converged = false;
-  bool stopped = false;  ///< SolveOptions::stop said so
-  std::string reason;    ///< "converged", or what went wrong in words
+  bool stopped = false;                    ///< SolveOptions::stop said so
+  std::string reason;                      ///< "converged", or what went wrong in words
+  FailureKind kind = FailureKind::search;  ///< of what went wrong
   int newton_iterations = 0;
   int factorisations = 0;  ///< those of matrices that turned out indefinite included
   int lag_iterations = 0;

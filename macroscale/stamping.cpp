@@ -187,6 +187,7 @@ class Run {
       ending = drive();
     } catch (const NumericalError& error) {
       reason_ = error.what();
+      kind_ = FailureKind::not_finite;
     }
     if (ending == Ending::stopped) return stop();
     if (ending == Ending::failed) return fail();
@@ -213,6 +214,7 @@ class Run {
     if (closed.stopped) return Ending::stopped;
     if (!closed.converged) {
       reason_ = "closing the binder: " + closed.reason;
+      kind_ = closed.kind;
       return Ending::failed;
     }
     now_.blank = blank_state(system_, now_.state, nullptr);
@@ -292,6 +294,7 @@ class Run {
     if (summary.stopped) return Ending::stopped;
     if (!summary.converged) {
       reason_ = summary.reason;
+      kind_ = summary.kind;
       return Ending::failed;
     }
     add_to_history(now_.row, account(system_, attempt_, end));
@@ -331,6 +334,7 @@ class Run {
 
   void describe_failure() {
     StampingFailure failure;
+    failure.kind = kind_;
     failure.reason = reason_;
     failure.step = whole_.state.memory.empty() ? 0 : now_.step + 1;
     if (attempt_.start && attempt_.iterate.size() > 0) {
@@ -362,6 +366,7 @@ class Run {
   StepData last_step_;        ///< the last part that was accepted
   StepData attempt_;          ///< the last one tried
   std::string reason_;
+  FailureKind kind_ = FailureKind::search;
   StampingResult result_;
 };
 

@@ -169,8 +169,20 @@ struct StampingSummary {
   std::string failure;   ///< why it stopped, when not completed
 };
 
+/// What ended a step, by the cure it asks for (macroscale/advice.h).
+enum class FailureKind {
+  search,           ///< Newton's method did not come to rest
+  indefinite,       ///< no direction lowers the energy
+  friction_loads,   ///< friction and contact drive each other to and fro
+  folded,           ///< a corner of the grid closed or turned over
+  pressed_through,  ///< a tool stands behind the middle of the fabric
+  lost_tool,        ///< a node where a tool's distance is not known
+  not_finite        ///< a quantity is no number
+};
+
 /// What the last attempt of a stamping that failed looked like in the end.
 struct StampingFailure {
+  FailureKind kind = FailureKind::search;
   std::string reason;
   int step = 0;                  ///< that failed; 0 = closing the binder
   double time = 0.0;             ///< where the last attempt would have ended [s]

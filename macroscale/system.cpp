@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <functional>
-#include <set>
 
 #include <tbb/blocked_range.h>
 #include <tbb/parallel_for.h>
@@ -114,8 +113,41 @@ CornerLaw System::corner_law(const StepData& step) const {
   return law;
 }
 
-PotentialTerms System::potential(const StepData& step, const VectorXd& x) const {
+void System::evaluate(const StepData& step, const VectorXd& x, Position& at) const {
   const Blank& blank = scene_.blank;
+  at.x = x;
+  at.corners.resize(4 * blank.quads.size());
+  const CornerLaw law = corner_law(step);
+  for_each(static_cast<int>(blank.quads.size()), [&](int q) {
+    const auto corners = corners_of(blank.quads[q]);
+    for (int k = 0; k < 4; ++k) {
+      const Corner& c = corners[k];
+      const Vector3d origin = node_of(x, c.node);
+      at.corners[4 * q + k] =
+          corner_point(law, node_of(x, c.along_warp) - origin, node_of(x, c.along_weft) - origin,
+                       step.start->corner_angle[4 * q + k]);
+    }
+  });
+  const int tools = static_cast<int>(scene_.tools.size());
+  const bool rubs = scene_.friction && !step.frictionless;
+  const FrictionSettings settings = friction_settings();
+  at.contacts.resize(tools);
+  at.friction.resize(rubs ? tools : 0);
+  for (int k = 0; k < tools; ++k) {
+    at.contacts[k].resize(blank.nodes());
+    if (rubs) at.friction[k].resize(blank.nodes());
+    for_each(blank.nodes(), [&, k](int i) {
+      at.contacts[k][i] = tool_contact(step, x, k, i);
+      if (rubs && step.friction[k][i].load > 0.0)
+        at.friction[k][i] =
+            friction_response(settings, step.friction[k][i], relative_velocity(step, x, k, i));
+    });
+  }
+}
+
+PotentialTerms System::potential(const StepData& step, const Position& at) const {
+  const Blank& blank = scene_.blank;
+  const VectorXd& x = at.x;
   PotentialTerms e;
   const double dt2 = step.dt * step.dt;
   e.inertia = ordered_sum(size_, [&](int k) {
@@ -132,14 +164,9 @@ PotentialTerms System::potential(const StepData& step, const VectorXd& x) const 
       tbb::blocked_range<int>(0, quads, 256), Sums{},
       [&](const tbb::blocked_range<int>& range, Sums s) {
         for (int q = range.begin(); q != range.end(); ++q) {
-          const auto corners = corners_of(blank.quads[q]);
           const CornerLaw here = trimmed(law, blank.share[q]);
           for (int k = 0; k < 4; ++k) {
-            const Corner& c = corners[k];
-            const Vector3d origin = node_of(x, c.node);
-            const CornerEnergy w =
-                corner_energy(here, node_of(x, c.along_warp) - origin, node_of(x, c.along_weft) - origin,
-                              step.start->corner_angle[4 * q + k]);
+            const CornerEnergy w = corner_energy(here, at.corners[4 * q + k]);
             s.tow += w.tension;
             s.shear += w.shear;
             s.rate += w.rate;
@@ -165,8 +192,8 @@ PotentialTerms System::potential(const StepData& step, const VectorXd& x) const 
 
   const int tools = static_cast<int>(scene_.tools.size());
   for (int k = 0; k < tools; ++k) {
-    e.compaction += ordered_sum(
-        blank.nodes(), [&](int i) { return blank.node_area[i] * tool_contact(step, x, k, i).normal.energy; });
+    e.compaction += ordered_sum(blank.nodes(),
+                                [&](int i) { return blank.node_area[i] * at.contacts[k][i].normal.energy; });
     if (body_[k] >= 0) e.loads += scene_.tools[k].force * x[body_[k]];
   }
   for (std::size_t k = 0; k < scene_.load.size(); ++k)
@@ -179,23 +206,22 @@ PotentialTerms System::potential(const StepData& step, const VectorXd& x) const 
   return e;
 }
 
-double System::friction_difference(const StepData& step, const VectorXd& from, const VectorXd& to) const {
-  if (step.frictionless || !scene_.friction) return 0.0;
+double System::friction_difference(const StepData& step, const Position& from, const Position& to) const {
+  if (from.friction.empty()) return 0.0;
   const FrictionSettings settings = friction_settings();
   double sum = 0.0;
   for (int k = 0; k < static_cast<int>(scene_.tools.size()); ++k)
     sum += ordered_sum(scene_.blank.nodes(), [&](int i) {
       const FrictionPoint& point = step.friction[k][i];
       if (point.load == 0.0) return 0.0;
-      return friction_power_difference(settings, point,
-                                       slip_velocity(point, relative_velocity(step, from, k, i)).norm(),
-                                       slip_velocity(point, relative_velocity(step, to, k, i)).norm());
+      return friction_power_difference(settings, point, from.friction[k][i], to.friction[k][i]);
     });
   return step.dt * sum;
 }
 
-VectorXd System::full_gradient(const StepData& step, const VectorXd& x) const {
+VectorXd System::full_gradient(const StepData& step, const Position& at) const {
   const Blank& blank = scene_.blank;
+  const VectorXd& x = at.x;
   VectorXd g(size_);
   const double dt2 = step.dt * step.dt;
   for_each(size_, [&](int k) { g[k] = mass_[k] * (x[k] - step.target[k]) / dt2; });
@@ -208,10 +234,7 @@ VectorXd System::full_gradient(const StepData& step, const VectorXd& x) const {
       const CornerLaw here = trimmed(law, blank.share[q]);
       for (int k = 0; k < 4; ++k) {
         const Corner& c = corners[k];
-        const Vector3d origin = node_of(x, c.node);
-        const CornerGradient w =
-            corner_gradient(here, node_of(x, c.along_warp) - origin, node_of(x, c.along_weft) - origin,
-                            step.start->corner_angle[4 * q + k]);
+        const CornerGradient w = corner_gradient(here, at.corners[4 * q + k]);
         const Vector3d a = w.a(), b = w.b();
         g.segment<3>(3 * c.along_warp) += a;
         g.segment<3>(3 * c.along_weft) += b;
@@ -234,15 +257,14 @@ VectorXd System::full_gradient(const StepData& step, const VectorXd& x) const {
     g.segment<3>(3 * q[3]) -= force;
   }
 
-  const FrictionSettings settings = friction_settings();
-  const bool rubs = scene_.friction && !step.frictionless;
+  const bool rubs = !at.friction.empty();
   std::vector<double> vertical(blank.nodes());
   for (int k = 0; k < static_cast<int>(scene_.tools.size()); ++k) {
     for_each(blank.nodes(), [&](int i) {
-      const auto [d, contact] = tool_contact(step, x, k, i);
+      const auto& [d, contact] = at.contacts[k][i];
       Vector3d force = -blank.node_area[i] * contact.pressure * d.normal;
       if (rubs && step.friction[k][i].load > 0.0)
-        force += friction_force(settings, step.friction[k][i], relative_velocity(step, x, k, i));
+        force += friction_force(step.friction[k][i], at.friction[k][i]);
       g.segment<3>(3 * i) += force;
       vertical[i] = force.z();
     });
@@ -259,212 +281,42 @@ VectorXd System::full_gradient(const StepData& step, const VectorXd& x) const {
   return g;
 }
 
-VectorXd System::gradient(const StepData& step, const VectorXd& x) const {
-  VectorXd g = full_gradient(step, x);
+VectorXd System::gradient(const StepData& step, const Position& at) const {
+  VectorXd g = full_gradient(step, at);
   for (std::size_t k = 0; k < scene_.held.size(); ++k)
     if (scene_.held[k]) g[static_cast<Eigen::Index>(k)] = 0.0;
   return g;
 }
 
-int System::block(int row_node, int column_node) const {
-  const auto begin = block_row_.begin() + block_start_[column_node],
-             end = block_row_.begin() + block_start_[column_node + 1];
-  return static_cast<int>(std::lower_bound(begin, end, row_node) - block_row_.begin());
+PotentialTerms System::potential(const StepData& step, const VectorXd& x) const {
+  Position at;
+  evaluate(step, x, at);
+  return potential(step, at);
 }
 
-void System::build_pattern() {
-  const Blank& blank = scene_.blank;
-  const int nodes = blank.nodes();
-  std::vector<std::set<int>> rows(nodes);
-  const auto couple = [&](int a, int b) { rows[std::min(a, b)].insert(std::max(a, b)); };
-  for (int i = 0; i < nodes; ++i) couple(i, i);
-  for (const auto& quad : blank.quads)
-    for (int a : quad)
-      for (int b : quad) couple(a, b);
-  for (const TowTriple& t : blank.triples) {
-    couple(t.before, t.middle);
-    couple(t.middle, t.after);
-    couple(t.before, t.after);
-  }
-  block_start_.push_back(0);
-  for (const auto& column : rows) {
-    block_row_.insert(block_row_.end(), column.begin(), column.end());
-    block_start_.push_back(static_cast<int>(block_row_.size()));
-  }
-  blocks_.assign(9 * block_row_.size(), 0.0);
-  body_row_.assign(scene_.loaded_tools(), std::vector<double>(3 * nodes, 0.0));
-  body_diagonal_.assign(scene_.loaded_tools(), 0.0);
-
-  for (const auto& quad : blank.quads)
-    for (const Corner& c : corners_of(quad)) {
-      const std::array<std::array<int, 2>, 6> pairs = {{{c.node, c.node},
-                                                        {c.along_warp, c.along_warp},
-                                                        {c.along_weft, c.along_weft},
-                                                        {c.along_warp, c.node},
-                                                        {c.along_weft, c.node},
-                                                        {c.along_warp, c.along_weft}}};
-      CornerSlots slots{};
-      for (std::size_t k = 0; k < pairs.size(); ++k) {
-        slots.flipped[k] = pairs[k][0] < pairs[k][1];
-        slots.slot[k] = block(std::max(pairs[k][0], pairs[k][1]), std::min(pairs[k][0], pairs[k][1]));
-      }
-      corner_slots_.push_back(slots);
-    }
-  for (int q = 0; q < static_cast<int>(blank.quads.size()); ++q) {
-    const auto [i, j] = blank.grid[blank.quads[q][0]];
-    colours_[2 * (i % 2) + j % 2].push_back(q);
-  }
-
-  SymmetricPattern pattern;
-  pattern.size = size_;
-  pattern.column_start.push_back(0);
-  const int bodies = scene_.loaded_tools();
-  for (int j = 0; j < nodes; ++j)
-    for (int c = 0; c < 3; ++c) {
-      for (int k = block_start_[j]; k < block_start_[j + 1]; ++k)
-        for (int r = (k == block_start_[j] ? c : 0); r < 3; ++r) pattern.row.push_back(3 * block_row_[k] + r);
-      for (int b = 0; b < bodies; ++b) pattern.row.push_back(3 * nodes + b);
-      pattern.column_start.push_back(static_cast<int>(pattern.row.size()));
-    }
-  for (int b = 0; b < bodies; ++b) {
-    pattern.row.push_back(3 * nodes + b);
-    pattern.column_start.push_back(static_cast<int>(pattern.row.size()));
-  }
-  solver_ = std::make_unique<SparseSolver>(std::move(pattern));
+double System::friction_difference(const StepData& step, const VectorXd& from, const VectorXd& to) const {
+  Position before, after;
+  evaluate(step, from, before);
+  evaluate(step, to, after);
+  return friction_difference(step, before, after);
 }
 
-void System::assemble_constant() {
-  constant_.assign(blocks_.size(), 0.0);
-  const auto add = [&](int a, int b, double value) {
-    double* target = &constant_[9 * block(std::max(a, b), std::min(a, b))];
-    for (int c = 0; c < 3; ++c) target[4 * c] += value;
-  };
-  for (const TowTriple& t : scene_.blank.triples) {
-    const double k = bending_stiffness(t);
-    add(t.before, t.before, k);
-    add(t.middle, t.middle, 4.0 * k);
-    add(t.after, t.after, k);
-    add(t.before, t.middle, -2.0 * k);
-    add(t.middle, t.after, -2.0 * k);
-    add(t.before, t.after, k);
-  }
-  constexpr std::array<double, 4> sign = {1.0, -1.0, 1.0, -1.0};
-  for (int quad = 0; quad < static_cast<int>(scene_.blank.quads.size()); ++quad) {
-    const auto& q = scene_.blank.quads[quad];
-    const double twist = twist_stiffness(quad);
-    for (int a = 0; a < 4; ++a)
-      for (int b = 0; b <= a; ++b) add(q[a], q[b], twist * sign[a] * sign[b]);
-  }
+VectorXd System::full_gradient(const StepData& step, const VectorXd& x) const {
+  Position at;
+  evaluate(step, x, at);
+  return full_gradient(step, at);
 }
 
-void System::add_corners(const StepData& step, const VectorXd& x, Filter filter) {
-  const CornerLaw law = corner_law(step);
-  for (const auto& colour : colours_)
-    for_each(static_cast<int>(colour.size()), [&](int index) {
-      const int q = colour[index];
-      const auto corners = corners_of(scene_.blank.quads[q]);
-      const CornerLaw here = trimmed(law, scene_.blank.share[q]);
-      for (int k = 0; k < 4; ++k) {
-        const Corner& c = corners[k];
-        const Vector3d origin = node_of(x, c.node);
-        const CornerHessian h =
-            corner_hessian(here, node_of(x, c.along_warp) - origin, node_of(x, c.along_weft) - origin,
-                           step.start->corner_angle[4 * q + k], filter);
-        const std::array<Matrix3d, 6> part = {h.aa + h.ab + h.ab.transpose() + h.bb,
-                                              h.aa,
-                                              h.bb,
-                                              -(h.aa + h.ab),
-                                              -(h.ab.transpose() + h.bb),
-                                              h.ab};
-        const CornerSlots& slots = corner_slots_[4 * q + k];
-        for (std::size_t p = 0; p < part.size(); ++p) {
-          Eigen::Map<Matrix3d> target(&blocks_[9 * slots.slot[p]]);
-          if (slots.flipped[p])
-            target += part[p].transpose();
-          else
-            target += part[p];
-        }
-      }
-    });
-}
-
-void System::add_contact(const StepData& step, const VectorXd& x, Filter filter) {
-  const Blank& blank = scene_.blank;
-  const FrictionSettings settings = friction_settings();
-  const bool rubs = scene_.friction && !step.frictionless;
-  const FrictionTangent tangent = filter == Filter::none       ? FrictionTangent::exact
-                                  : filter == Filter::positive ? FrictionTangent::convex
-                                                               : FrictionTangent::secant;
-  for (int k = 0, body = 0; k < static_cast<int>(scene_.tools.size()); ++k) {
-    const bool loaded = body_[k] >= 0;
-    std::vector<double>* row = loaded ? &body_row_[body] : nullptr;
-    for_each(blank.nodes(), [&](int i) {
-      const auto [d, contact] = tool_contact(step, x, k, i);
-      Matrix3d stiffness = blank.node_area[i] * contact.stiffness * d.normal * d.normal.transpose();
-      // Pressing against a convex tool, the node would rather slide off: negative, so dropped when filtering.
-      if (filter == Filter::none) stiffness -= blank.node_area[i] * contact.pressure * d.curvature;
-      if (rubs && step.friction[k][i].load > 0.0)
-        stiffness +=
-            friction_tangent(settings, step.friction[k][i], relative_velocity(step, x, k, i), tangent) /
-            step.dt;
-      Eigen::Map<Matrix3d>(&blocks_[9 * block_start_[i]]) += stiffness;
-      if (loaded)
-        for (int c = 0; c < 3; ++c) (*row)[3 * i + c] = -stiffness(2, c);
-    });
-    if (loaded) {
-      double diagonal = scene_.tools[k].mass / (step.dt * step.dt);
-      for (int i = 0; i < blank.nodes(); ++i) diagonal -= (*row)[3 * i + 2];
-      body_diagonal_[body++] = diagonal;
-    }
-  }
+VectorXd System::gradient(const StepData& step, const VectorXd& x) const {
+  Position at;
+  evaluate(step, x, at);
+  return gradient(step, at);
 }
 
 void System::assemble(const StepData& step, const VectorXd& x, Filter filter, double shift) {
-  blocks_ = constant_;
-  const double inverse_dt2 = 1.0 / (step.dt * step.dt);
-  for_each(scene_.blank.nodes(), [&](int i) {
-    const double diagonal =
-        mass_[3 * i] * inverse_dt2 + scene_.stabilisation * scene_.blank.node_area[i] / step.dt;
-    for (int c = 0; c < 3; ++c) blocks_[9 * block_start_[i] + 4 * c] += diagonal;
-  });
-  add_corners(step, x, filter);
-  add_contact(step, x, filter);
-  write_matrix(shift);
-}
-
-void System::write_matrix(double shift) {
-  const int nodes = scene_.blank.nodes(), bodies = scene_.loaded_tools();
-  auto values = solver_->values();
-  const auto& start = solver_->pattern().column_start;
-  const bool some_held = !scene_.held.empty();
-  const auto held = [&](int unknown) { return some_held && scene_.held[unknown]; };
-  for_each(nodes, [&](int j) {
-    for (int c = 0; c < 3; ++c) {
-      int target = start[3 * j + c];
-      const bool column_held = held(3 * j + c);
-      for (int k = block_start_[j]; k < block_start_[j + 1]; ++k) {
-        const double* source = &blocks_[9 * k + 3 * c];
-        const bool diagonal_block = k == block_start_[j];
-        for (int r = diagonal_block ? c : 0; r < 3; ++r, ++target) {
-          const bool on_diagonal = diagonal_block && r == c;
-          if (column_held || held(3 * block_row_[k] + r))
-            values[target] = on_diagonal ? 1.0 : 0.0;
-          else
-            values[target] = source[r] + (on_diagonal ? shift : 0.0);
-        }
-      }
-      for (int b = 0; b < bodies; ++b, ++target) values[target] = column_held ? 0.0 : body_row_[b][3 * j + c];
-    }
-  });
-  for (int b = 0; b < bodies; ++b) values[start[3 * nodes + b]] = body_diagonal_[b] + shift;
-}
-
-double System::largest_diagonal() const {
-  const auto& pattern = solver_->pattern();
-  const auto values = solver_->values();
-  double largest = 0.0;
-  for (int j = 0; j < pattern.size; ++j) largest = std::max(largest, values[pattern.column_start[j]]);
-  return largest;
+  Position at;
+  evaluate(step, x, at);
+  assemble(step, at, filter, shift);
 }
 
 }  // namespace heddle::macroscale

@@ -31,6 +31,14 @@ struct ToolContact {
   NormalContact normal;
 };
 
+/// A position with each law looked up there once: energy, forces and stiffness share it.
+struct Position {
+  Eigen::VectorXd x;                                    ///< [m]
+  std::vector<CornerPoint> corners;                     ///< 4 a quad
+  std::vector<std::vector<ToolContact>> contacts;       ///< per tool, per node
+  std::vector<std::vector<FrictionResponse>> friction;  ///< the same; empty without friction
+};
+
 /// Energies of the incremental potential at one position [J]; friction only as a difference (see below).
 struct PotentialTerms {
   double inertia = 0.0, tow = 0.0, shear = 0.0, rate = 0.0, bending = 0.0, twist = 0.0, compaction = 0.0;
@@ -50,16 +58,27 @@ class System {
   const Scene& scene() const { return scene_; }
   int size() const { return size_; }
 
-  PotentialTerms potential(const StepData& step, const Eigen::VectorXd& x) const;
+  /// Looks everything up at at.x (which is set to x).
+  void evaluate(const StepData& step, const Eigen::VectorXd& x, Position& at) const;
+
+  PotentialTerms potential(const StepData& step, const Position& at) const;
   /// Change of the friction potential between two positions [J].
+  double friction_difference(const StepData& step, const Position& from, const Position& to) const;
+  /// dE/dx; at held unknowns it is the force their supports must give [N].
+  Eigen::VectorXd full_gradient(const StepData& step, const Position& at) const;
+  /// dE/dx with the entries of held unknowns set to zero.
+  Eigen::VectorXd gradient(const StepData& step, const Position& at) const;
+  /// Fills the solver's matrix with d2E/dx2 (held unknowns: identity) plus `shift` on the diagonal.
+  void assemble(const StepData& step, const Position& at, Filter filter, double shift = 0.0);
+
+  // The same at a position that is looked at once.
+  PotentialTerms potential(const StepData& step, const Eigen::VectorXd& x) const;
   double friction_difference(const StepData& step, const Eigen::VectorXd& from,
                              const Eigen::VectorXd& to) const;
-  /// dE/dx; at held unknowns it is the force their supports must give [N].
   Eigen::VectorXd full_gradient(const StepData& step, const Eigen::VectorXd& x) const;
-  /// dE/dx with the entries of held unknowns set to zero.
   Eigen::VectorXd gradient(const StepData& step, const Eigen::VectorXd& x) const;
-  /// Fills the solver's matrix with d2E/dx2 (held unknowns: identity) plus `shift` on the diagonal.
   void assemble(const StepData& step, const Eigen::VectorXd& x, Filter filter, double shift = 0.0);
+
   SparseSolver& solver() { return *solver_; }
   /// Largest diagonal entry of the last assembled matrix [N/m].
   double largest_diagonal() const;
@@ -86,8 +105,8 @@ class System {
  private:
   void build_pattern();
   void assemble_constant();
-  void add_corners(const StepData& step, const Eigen::VectorXd& x, Filter filter);
-  void add_contact(const StepData& step, const Eigen::VectorXd& x, Filter filter);
+  void add_corners(const StepData& step, const Position& at, Filter filter);
+  void add_contact(const StepData& step, const Position& at, Filter filter);
   void write_matrix(double shift);
   int block(int row_node, int column_node) const;
 

@@ -8,6 +8,7 @@
 
 #include <fmt/format.h>
 
+#include "macroscale/advice.h"
 #include "pipeline/cache.h"
 #include "pipeline/case.h"
 #include "pipeline/coupon_report.h"
@@ -230,15 +231,6 @@ ReportInput report_input(const Case& a_case, const Findings& findings) {
   return input;
 }
 
-// Advice that fits where it stopped.
-std::string advice_for(const macroscale::StampingSummary& summary, int steps) {
-  if (summary.steps == 0)
-    return "The binder did not close or the first step failed: check binder_force, the tools and the blank's "
-           "spacing.";
-  return fmt::format("Try smaller steps (--set process.steps={}), or look at the last state for a fold.",
-                     2 * steps);
-}
-
 // Hash of the inputs of each stage the case asks for.
 std::vector<std::pair<std::string, std::string>> stage_hashes(const Case& a_case) {
   std::vector<std::pair<std::string, std::string>> hashes;
@@ -265,7 +257,8 @@ void write_findings(const Case& a_case, RunFolder& folder, const Findings& findi
     record.stamping = findings.stamping->summary;
     record.grid_error = findings.grid_error;
     record.failure = findings.stamping->failure;
-    if (record.failure) record.advice = advice_for(*record.stamping, a_case.stamping->process.steps);
+    if (record.failure)
+      record.advice = macroscale::advice_for(*record.failure, *a_case.stamping, *record.stamping);
   }
   folder.write("summary.json", summary_json(record));
   folder.write("report.html", report_html(report_input(a_case, findings)));
@@ -512,7 +505,9 @@ RunEnding run_part(const RunOptions& options, Part part) {
       "heddle: stamping stopped: {}\n  {} holds the history, the last state (macroscale/blank_last.vtu), the "
       "attempt that failed (blank_failed.vtu, and `failure` in summary.json) and the report so far.\n  {}\n",
       findings.stamping->summary.failure, folder.path().string(),
-      advice_for(findings.stamping->summary, steps));
+      findings.stamping->failure
+          ? macroscale::advice_for(*findings.stamping->failure, *a_case.stamping, findings.stamping->summary)
+          : "");
   return {exit_failed, false, findings.stamping->summary.failure};
 }
 

@@ -61,3 +61,16 @@ TEST_CASE("surface error falls with the fourth power of the step", "[core][surfa
   CHECK(order > 3.5);
   CHECK(order < 4.6);
 }
+
+// A search for the least energy compares values that are almost equal.
+TEST_CASE("a surface far beyond its grid is smooth down to rounding", "[core][surface]") {
+  const Surface s = sampled(bump, 301);
+  const double y = GENERATE(-2.0, 0.37, 3.0);  // 600 steps outside, inside, 600 beyond
+  constexpr double step = 1e-8;
+  for (int k = 0; k < 50; ++k) {
+    const double x = -6.0 + 1e-3 * k;  // 1800 steps outside
+    const auto v = s.evaluate(x, y);
+    const double change = s.evaluate(x + step, y).f - v.f;
+    CHECK(std::abs(change - step * (v.fx + 0.5 * step * v.fxx)) < 1e-14 * std::abs(v.f));
+  }
+}

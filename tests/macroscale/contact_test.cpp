@@ -28,6 +28,14 @@ FrictionPoint loaded_point() {
   return point;
 }
 
+// N Int g dU between two slip speeds.
+double power_difference(const FrictionSettings& settings, const FrictionPoint& point, double from,
+                        double to) {
+  const Vector3d along = point.normal.unitOrthogonal();
+  return friction_power_difference(settings, point, friction_response(settings, point, from * along),
+                                   friction_response(settings, point, to * along));
+}
+
 }  // namespace
 
 TEST_CASE("contact energy, pressure and stiffness are each the slope of the one before",
@@ -53,7 +61,7 @@ TEST_CASE("friction force is the slope of its potential and its tangent the slop
   const Vector3d v = size * Vector3d(0.8, 0.5, 0.1), d(0.2, 0.3, -0.6);
   const double base = slip_velocity(point, v).norm();
   const auto potential = [&](double t) {
-    return friction_power_difference(settings, point, base, slip_velocity(point, v + t * d).norm());
+    return power_difference(settings, point, base, slip_velocity(point, v + t * d).norm());
   };
   const double slope = friction_force(settings, point, v).dot(d);
   CHECK(derivative_gap(potential, 0.0, size, slope) < 1e-6);
@@ -85,12 +93,12 @@ TEST_CASE("the friction potential does not depend on the path: power around a cl
   const auto model = rising();
   const FrictionSettings settings{&model, 1e-3};
   const FrictionPoint point = loaded_point();
-  const double there = friction_power_difference(settings, point, 2e-4, 3e-3),
-               back = friction_power_difference(settings, point, 3e-3, 2e-4);
+  const double there = power_difference(settings, point, 2e-4, 3e-3),
+               back = power_difference(settings, point, 3e-3, 2e-4);
   CHECK(there + back == Approx(0.0).margin(1e-12 * std::abs(there)));
   // Two pieces against one: only quadrature error is left.
-  const double pieces = friction_power_difference(settings, point, 2e-4, 1.7e-3) +
-                        friction_power_difference(settings, point, 1.7e-3, 3e-3);
+  const double pieces =
+      power_difference(settings, point, 2e-4, 1.7e-3) + power_difference(settings, point, 1.7e-3, 3e-3);
   CHECK(pieces == Approx(there).epsilon(1e-6));
 }
 
@@ -110,7 +118,7 @@ TEST_CASE(
   const auto above = [&](const Vector3d& w, double stiffness) {
     const Vector3d d = w - v;
     const double bound = force.dot(d) + 0.5 * stiffness * d.dot(secant * d);
-    return bound - friction_power_difference(settings, point, v.norm(), w.norm());
+    return bound - power_difference(settings, point, v.norm(), w.norm());
   };
   const double scale = force.norm() * v.norm();
   const Vector3d across = point.normal.cross(v);

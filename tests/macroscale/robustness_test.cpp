@@ -8,12 +8,13 @@
 using namespace heddle;
 
 // The first ones, and those that once did not come to their end: friction that turns round at hundreds of
-// nodes at once (7), a film that drags at the first touch (13, 35), wrinkles at a light binder (14), tows so
-// tense that the fabric is crushed on the shoulder (37, 53).
+// nodes at once (7), a film that drags at the first touch (13, 35), wrinkles at a light binder (14), slip
+// that sets in as a front where friction falls with speed (25), tows so tense that the fabric is crushed on
+// the shoulder (37, 53), much binder force that rubs next to nothing (162).
 TEST_CASE("random stampings of any law, binder, speed, weave direction and fabric come to their end",
           "[macroscale][robustness][slow]") {
   const mesoscale::FabricProperties fabric = mesoscale::analyse(mesoscale::CellSpec{}).fabric;
-  const int number = GENERATE(0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 16, 21, 35, 37, 53);
+  const int number = GENERATE(0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 25, 35, 37, 53, 162);
   const test::RandomStamping stamping = test::random_stamping(number, fabric);
   const test::RobustnessVerdict verdict = test::run(stamping);
   INFO("case " << number << ": " << verdict.failure);

@@ -1,0 +1,220 @@
+// The Hessian of the incremental potential: its pattern, found once, and its values.
+#include <algorithm>
+#include <array>
+#include <set>
+
+#include <tbb/blocked_range.h>
+#include <tbb/parallel_for.h>
+
+#include "macroscale/system.h"
+
+namespace heddle::macroscale {
+
+namespace {
+
+using Eigen::Matrix3d;
+
+template <class Body>
+void for_each(int n, const Body& body) {
+  tbb::parallel_for(tbb::blocked_range<int>(0, n, 256), [&](const tbb::blocked_range<int>& range) {
+    for (int i = range.begin(); i != range.end(); ++i) body(i);
+  });
+}
+
+}  // namespace
+
+int System::block(int row_node, int column_node) const {
+  const auto begin = block_row_.begin() + block_start_[column_node],
+             end = block_row_.begin() + block_start_[column_node + 1];
+  return static_cast<int>(std::lower_bound(begin, end, row_node) - block_row_.begin());
+}
+
+void System::build_pattern() {
+  const Blank& blank = scene_.blank;
+  const int nodes = blank.nodes();
+  std::vector<std::set<int>> rows(nodes);
+  const auto couple = [&](int a, int b) { rows[std::min(a, b)].insert(std::max(a, b)); };
+  for (int i = 0; i < nodes; ++i) couple(i, i);
+  for (const auto& quad : blank.quads)
+    for (int a : quad)
+      for (int b : quad) couple(a, b);
+  for (const TowTriple& t : blank.triples) {
+    couple(t.before, t.middle);
+    couple(t.middle, t.after);
+    couple(t.before, t.after);
+  }
+  block_start_.push_back(0);
+  for (const auto& column : rows) {
+    block_row_.insert(block_row_.end(), column.begin(), column.end());
+    block_start_.push_back(static_cast<int>(block_row_.size()));
+  }
+  blocks_.assign(9 * block_row_.size(), 0.0);
+  body_row_.assign(scene_.loaded_tools(), std::vector<double>(3 * nodes, 0.0));
+  body_diagonal_.assign(scene_.loaded_tools(), 0.0);
+
+  for (const auto& quad : blank.quads)
+    for (const Corner& c : corners_of(quad)) {
+      const std::array<std::array<int, 2>, 6> pairs = {{{c.node, c.node},
+                                                        {c.along_warp, c.along_warp},
+                                                        {c.along_weft, c.along_weft},
+                                                        {c.along_warp, c.node},
+                                                        {c.along_weft, c.node},
+                                                        {c.along_warp, c.along_weft}}};
+      CornerSlots slots{};
+      for (std::size_t k = 0; k < pairs.size(); ++k) {
+        slots.flipped[k] = pairs[k][0] < pairs[k][1];
+        slots.slot[k] = block(std::max(pairs[k][0], pairs[k][1]), std::min(pairs[k][0], pairs[k][1]));
+      }
+      corner_slots_.push_back(slots);
+    }
+  for (int q = 0; q < static_cast<int>(blank.quads.size()); ++q) {
+    const auto [i, j] = blank.grid[blank.quads[q][0]];
+    colours_[2 * (i % 2) + j % 2].push_back(q);
+  }
+
+  SymmetricPattern pattern;
+  pattern.size = size_;
+  pattern.column_start.push_back(0);
+  const int bodies = scene_.loaded_tools();
+  for (int j = 0; j < nodes; ++j)
+    for (int c = 0; c < 3; ++c) {
+      for (int k = block_start_[j]; k < block_start_[j + 1]; ++k)
+        for (int r = (k == block_start_[j] ? c : 0); r < 3; ++r) pattern.row.push_back(3 * block_row_[k] + r);
+      for (int b = 0; b < bodies; ++b) pattern.row.push_back(3 * nodes + b);
+      pattern.column_start.push_back(static_cast<int>(pattern.row.size()));
+    }
+  for (int b = 0; b < bodies; ++b) {
+    pattern.row.push_back(3 * nodes + b);
+    pattern.column_start.push_back(static_cast<int>(pattern.row.size()));
+  }
+  solver_ = std::make_unique<SparseSolver>(std::move(pattern));
+}
+
+void System::assemble_constant() {
+  constant_.assign(blocks_.size(), 0.0);
+  const auto add = [&](int a, int b, double value) {
+    double* target = &constant_[9 * block(std::max(a, b), std::min(a, b))];
+    for (int c = 0; c < 3; ++c) target[4 * c] += value;
+  };
+  for (const TowTriple& t : scene_.blank.triples) {
+    const double k = bending_stiffness(t);
+    add(t.before, t.before, k);
+    add(t.middle, t.middle, 4.0 * k);
+    add(t.after, t.after, k);
+    add(t.before, t.middle, -2.0 * k);
+    add(t.middle, t.after, -2.0 * k);
+    add(t.before, t.after, k);
+  }
+  constexpr std::array<double, 4> sign = {1.0, -1.0, 1.0, -1.0};
+  for (int quad = 0; quad < static_cast<int>(scene_.blank.quads.size()); ++quad) {
+    const auto& q = scene_.blank.quads[quad];
+    const double twist = twist_stiffness(quad);
+    for (int a = 0; a < 4; ++a)
+      for (int b = 0; b <= a; ++b) add(q[a], q[b], twist * sign[a] * sign[b]);
+  }
+}
+
+void System::add_corners(const StepData& step, const Position& at, Filter filter) {
+  const CornerLaw law = corner_law(step);
+  for (const auto& colour : colours_)
+    for_each(static_cast<int>(colour.size()), [&](int index) {
+      const int q = colour[index];
+      const CornerLaw here = trimmed(law, scene_.blank.share[q]);
+      for (int k = 0; k < 4; ++k) {
+        const CornerHessian h = corner_hessian(here, at.corners[4 * q + k], filter);
+        const std::array<Matrix3d, 6> part = {h.aa + h.ab + h.ab.transpose() + h.bb,
+                                              h.aa,
+                                              h.bb,
+                                              -(h.aa + h.ab),
+                                              -(h.ab.transpose() + h.bb),
+                                              h.ab};
+        const CornerSlots& slots = corner_slots_[4 * q + k];
+        for (std::size_t p = 0; p < part.size(); ++p) {
+          Eigen::Map<Matrix3d> target(&blocks_[9 * slots.slot[p]]);
+          if (slots.flipped[p])
+            target += part[p].transpose();
+          else
+            target += part[p];
+        }
+      }
+    });
+}
+
+void System::add_contact(const StepData& step, const Position& at, Filter filter) {
+  const Blank& blank = scene_.blank;
+  const bool rubs = !at.friction.empty();
+  const FrictionTangent tangent = filter == Filter::none       ? FrictionTangent::exact
+                                  : filter == Filter::positive ? FrictionTangent::convex
+                                                               : FrictionTangent::secant;
+  for (int k = 0, body = 0; k < static_cast<int>(scene_.tools.size()); ++k) {
+    const bool loaded = body_[k] >= 0;
+    std::vector<double>* row = loaded ? &body_row_[body] : nullptr;
+    for_each(blank.nodes(), [&](int i) {
+      const auto& [d, contact] = at.contacts[k][i];
+      Matrix3d stiffness = blank.node_area[i] * contact.stiffness * d.normal * d.normal.transpose();
+      // Pressing against a convex tool, the node would rather slide off: negative, so dropped when filtering.
+      if (filter == Filter::none) stiffness -= blank.node_area[i] * contact.pressure * d.curvature;
+      if (rubs && step.friction[k][i].load > 0.0)
+        stiffness +=
+            friction_tangent(friction_settings(), step.friction[k][i], at.friction[k][i], tangent) / step.dt;
+      Eigen::Map<Matrix3d>(&blocks_[9 * block_start_[i]]) += stiffness;
+      if (loaded)
+        for (int c = 0; c < 3; ++c) (*row)[3 * i + c] = -stiffness(2, c);
+    });
+    if (loaded) {
+      double diagonal = scene_.tools[k].mass / (step.dt * step.dt);
+      for (int i = 0; i < blank.nodes(); ++i) diagonal -= (*row)[3 * i + 2];
+      body_diagonal_[body++] = diagonal;
+    }
+  }
+}
+
+void System::assemble(const StepData& step, const Position& at, Filter filter, double shift) {
+  blocks_ = constant_;
+  const double inverse_dt2 = 1.0 / (step.dt * step.dt);
+  for_each(scene_.blank.nodes(), [&](int i) {
+    const double diagonal =
+        mass_[3 * i] * inverse_dt2 + scene_.stabilisation * scene_.blank.node_area[i] / step.dt;
+    for (int c = 0; c < 3; ++c) blocks_[9 * block_start_[i] + 4 * c] += diagonal;
+  });
+  add_corners(step, at, filter);
+  add_contact(step, at, filter);
+  write_matrix(shift);
+}
+
+void System::write_matrix(double shift) {
+  const int nodes = scene_.blank.nodes(), bodies = scene_.loaded_tools();
+  auto values = solver_->values();
+  const auto& start = solver_->pattern().column_start;
+  const bool some_held = !scene_.held.empty();
+  const auto held = [&](int unknown) { return some_held && scene_.held[unknown]; };
+  for_each(nodes, [&](int j) {
+    for (int c = 0; c < 3; ++c) {
+      int target = start[3 * j + c];
+      const bool column_held = held(3 * j + c);
+      for (int k = block_start_[j]; k < block_start_[j + 1]; ++k) {
+        const double* source = &blocks_[9 * k + 3 * c];
+        const bool diagonal_block = k == block_start_[j];
+        for (int r = diagonal_block ? c : 0; r < 3; ++r, ++target) {
+          const bool on_diagonal = diagonal_block && r == c;
+          if (column_held || held(3 * block_row_[k] + r))
+            values[target] = on_diagonal ? 1.0 : 0.0;
+          else
+            values[target] = source[r] + (on_diagonal ? shift : 0.0);
+        }
+      }
+      for (int b = 0; b < bodies; ++b, ++target) values[target] = column_held ? 0.0 : body_row_[b][3 * j + c];
+    }
+  });
+  for (int b = 0; b < bodies; ++b) values[start[3 * nodes + b]] = body_diagonal_[b] + shift;
+}
+
+double System::largest_diagonal() const {
+  const auto& pattern = solver_->pattern();
+  const auto values = solver_->values();
+  double largest = 0.0;
+  for (int j = 0; j < pattern.size; ++j) largest = std::max(largest, values[pattern.column_start[j]]);
+  return largest;
+}
+
+}  // namespace heddle::macroscale
