@@ -18,6 +18,7 @@
 
 #include "macroscale/cad.h"
 #include "macroscale/input_text.h"
+#include "macroscale/mesh_repair.h"
 
 namespace heddle::macroscale {
 namespace {

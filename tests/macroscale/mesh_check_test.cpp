@@ -3,6 +3,7 @@
 
 #include "macroscale/mesh_check.h"
 #include "macroscale/mesh_distance.h"
+#include "macroscale/mesh_repair.h"
 #include "tests/macroscale/sample_meshes.h"
 
 using namespace heddle;
