@@ -16,8 +16,8 @@ struct SearchOptions {
   /// Hypotheses are weighed by Akaike's criterion of the forms as they are, not by evidence: to see what
   /// evidence is worth.
   bool akaike = false;
-  std::size_t pairs_of = 4;  ///< single effects whose pairs are tried, the best by evidence
-  std::size_t partners = 6;  ///< of each, the strongest by their score on what the first leaves over
+  std::size_t pairs_of = 4;  ///< ids whose pairs are tried, the best by evidence
+  std::size_t partners = 6;  ///< ids of each, the strongest by their score on what the first leaves over
 };
 
 /// When a name is given.

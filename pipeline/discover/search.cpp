@@ -6,6 +6,7 @@
 #include <cmath>
 #include <limits>
 #include <set>
+#include <string>
 
 namespace heddle::discover {
 
@@ -79,9 +80,12 @@ std::vector<Hypothesis> pairs_to_try(const std::vector<Scored>& singles,
                                      const std::vector<std::vector<Signature>>& signatures,
                                      const ForwardModel& model, const SearchOptions& options) {
   std::set<Hypothesis> pairs;
-  for (std::size_t k = 0; k < std::min(singles.size(), options.pairs_of); ++k) {
-    const MapFit& fit = singles[k].fit;
+  std::set<std::string> firsts;
+  for (const Scored& single : singles) {
+    if (firsts.size() == options.pairs_of) break;
+    const MapFit& fit = single.fit;
     const std::size_t first = fit.hypothesis[0];
+    if (!firsts.insert(model.candidates[first].id).second) continue;
     const BesideBaseline beside(fit.jacobian);
     const Eigen::VectorXd gap = beside.gap_of(fit);
     std::vector<std::pair<double, std::size_t>> partners;
@@ -97,6 +101,9 @@ std::vector<Hypothesis> pairs_to_try(const std::vector<Scored>& singles,
       if (0.5 * score * score > options.bayes_factor) partners.emplace_back(score, other);
     }
     std::ranges::sort(partners, std::greater{});
+    // Of the many choices under one id the strongest: they must not crowd the other names out.
+    std::set<std::string> ids;
+    std::erase_if(partners, [&](const auto& p) { return !ids.insert(model.candidates[p.second].id).second; });
     partners.resize(std::min(partners.size(), options.partners));
     for (const auto& [score, other] : partners)
       pairs.insert({std::min(first, other), std::max(first, other)});

@@ -303,3 +303,38 @@ TEST_CASE("a name that another width of the priors would change is not given alo
   CHECK(open.answer == Answer::one_of);
   CHECK(open.reasons.back().find("2 times as wide it is no effect") != std::string::npos);
 }
+
+TEST_CASE("many choices under one id do not crowd another name out of the pairs", "[discover][search]") {
+  // Beside a parabola: x^3 alone, and seven choices of one id, all nearer to what is left over than it is.
+  const Line line;
+  ForwardModel model = line.model(normal(0.0, 0.4), false);
+  const auto add = [&](const char* id) {
+    Candidate candidate = model.candidates[0];
+    candidate.id = id;
+    candidate.numbers = {{std::string(id) + ".amplitude", "", normal(0.0, 0.4)}};
+    model.candidates.push_back(candidate);
+  };
+  for (int k = 0; k < 7; ++k) add("label");
+  add("cube");
+  const std::size_t cube = 8;
+  model.predict = [x = line.x, cube](const Trial& trial) -> Eigen::VectorXd {
+    Eigen::VectorXd y = trial.baseline[0] + (trial.baseline[1] * x.array());
+    for (const auto& [effect, values] : trial.effects) {
+      if (effect == 0) y.array() += values[0] * x.array().square();
+      if (effect == cube) y.array() += values[0] * x.array().cube();
+      if (effect > 0 && effect < cube)
+        y.array() +=
+            values[0] * (x.array().cube() + (1.0 + 0.01 * static_cast<double>(effect)) * x.array().pow(5));
+    }
+    return y;
+  };
+  Eigen::VectorXd value = measured(line, 0.8, 0.02)->value();
+  value.array() += 0.3 * (line.x.array().cube() + line.x.array().pow(5));
+  const SearchResult result =
+      search(model, {.value = value, .covariance = 4e-4 * Eigen::MatrixXd::Identity(12, 12)});
+  CHECK(result.find({0, cube}) != nullptr);
+  const auto with_label = std::ranges::count_if(result.scored, [&](const Scored& one) {
+    return one.fit.hypothesis.size() == 2 && one.fit.hypothesis[0] == 0 && one.fit.hypothesis[1] < cube;
+  });
+  CHECK(with_label == 1);
+}
