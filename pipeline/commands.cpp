@@ -505,9 +505,8 @@ RunEnding run_part(const RunOptions& options, Part part) {
       "heddle: stamping stopped: {}\n  {} holds the history, the last state (macroscale/blank_last.vtu), the "
       "attempt that failed (blank_failed.vtu, and `failure` in summary.json) and the report so far.\n  {}\n",
       findings.stamping->summary.failure, folder.path().string(),
-      findings.stamping->failure
-          ? macroscale::advice_for(*findings.stamping->failure, *a_case.stamping, findings.stamping->summary)
-          : "");
+      macroscale::advice_for(findings.stamping->failure.value(), *a_case.stamping,
+                             findings.stamping->summary));
   return {exit_failed, false, findings.stamping->summary.failure};
 }
 

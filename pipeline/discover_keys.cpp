@@ -88,8 +88,7 @@ std::vector<Key> discover_keys() {
                "Over what share of the range of each factor that error wanders; prior."),
       choice("search.evidence", {"laplace", "akaike"},
              "What hypotheses are weighed by; akaike, of the forms as they are, is there to see what "
-             "evidence is "
-             "worth."),
+             "evidence is worth."),
       whole("search.pairs_of", "4", "[0, 20]", "Of how many single effects, the best, pairs are tried."),
       quantity("verdict.gate", "%", "1 %", "(0, 1]",
                "Share of campaigns without a gap in which the gate may open."),

@@ -64,8 +64,7 @@ std::vector<Verdict> caution_verdicts(const DiscoveryPage& page) {
            "are asked of a name).",
            100.0 * found.evidence.stability, 100.0 * wanted)});
   for (const discover::UnderPrior& under : found.evidence.priors) {
-    const std::string best =
-        under.best.empty() ? "no effect" : in_words(found.forward, under.best);
+    const std::string best = under.best.empty() ? "no effect" : in_words(found.forward, under.best);
     const bool same = best == in_words(found.forward, found.decision.named);
     verdicts.push_back(
         {same ? Tone::holds : Tone::attention,

@@ -30,7 +30,7 @@ struct VerdictOptions {
   double excess = 0.8;        ///< share of the excess chi-square that a name must remove
   double captured = 0.75;     ///< share of a free shape's ln Bayes factor that a name must reach
   double stability = 0.8;     ///< share of half-samples in which it wins
-  bool unknown = true;        ///< off: a name whatever a free shape says, to see what UNKNOWN is worth
+  bool unknown = true;        ///< off: free shapes of the gap say nothing, to see what UNKNOWN is worth
 };
 
 }  // namespace heddle::discover

@@ -71,8 +71,9 @@ double top_evidence(const std::vector<Shape>& shapes) {
   return shapes.empty() ? 0.0 : shapes.front().log_evidence;
 }
 
-/// A free shape and its ln odds against none. Before the data an unknown function of one factor is as likely
-/// as one effect, one of two factors as two effects; those of each kind share that.
+/// A free shape and its ln Bayes factor against none with its prior, as a name has both. Before the data an
+/// unknown function of one factor is as likely as one effect, one of two factors as two effects; those of
+/// each kind share that.
 struct FreeShape {
   const Shape* shape = nullptr;
   double log_odds = -std::numeric_limits<double>::infinity();
@@ -111,7 +112,9 @@ double chi_square_tail(double chi2, double freedom) {
 Decision decide(const ForwardModel& model, const SearchResult& result, const Evidence& evidence,
                 const VerdictOptions& options) {
   Decision decision;
-  const double gain = result.best_gain(), shape = top_evidence(evidence.gap_shapes);
+  const std::vector<Shape> none;
+  const std::vector<Shape>& gap_shapes = options.unknown ? evidence.gap_shapes : none;
+  const double gain = result.best_gain(), shape = top_evidence(gap_shapes);
   if (evidence.gate_p >= options.gate) {
     decision.reasons.push_back(fmt::format(
         "The largest of all contrasts and signatures is what noise alone gives in {:.2g} of campaigns.",
@@ -143,13 +146,13 @@ Decision decide(const ForwardModel& model, const SearchResult& result, const Evi
   const double captured = shape > options.bayes_factor ? gain / shape : 1.0;
   const double log_odds =
       gain + (best.fit.hypothesis.size() == 1 ? result.log_prior_one : result.log_prior_two);
-  const FreeShape any = most_likely(evidence.gap_shapes, result, 2);
+  const FreeShape any = most_likely(gap_shapes, result, 2);
   const bool says_more = any.log_odds - log_odds > options.bayes_factor;
   if (gain <= options.bayes_factor ||
-      (options.unknown && something_left && says_more &&
+      (something_left && says_more &&
        (captured < options.captured || decision.excess_removed < options.excess))) {
     decision.answer = Answer::unknown;
-    const Shape& said = says_more ? *any.shape : evidence.gap_shapes.front();
+    const Shape& said = says_more ? *any.shape : gap_shapes.front();
     decision.reasons.push_back(
         fmt::format("A smooth gap over {} (ln Bayes factor {:.1f}) says more than the best name, {} ({:.1f}, "
                     "which removes {:.0f} % of the excess).",
@@ -157,8 +160,8 @@ Decision decide(const ForwardModel& model, const SearchResult& result, const Evi
     return decision;
   }
   // The numbers of two effects bend to any function of a factor both depend on: the pair must be likelier.
-  const FreeShape one = most_likely(evidence.gap_shapes, result, 1);
-  if (options.unknown && best.fit.hypothesis.size() == 2 && one.log_odds - log_odds > options.bayes_factor) {
+  const FreeShape one = most_likely(gap_shapes, result, 1);
+  if (best.fit.hypothesis.size() == 2 && one.log_odds - log_odds > options.bayes_factor) {
     decision.answer = Answer::unknown;
     decision.reasons.push_back(
         fmt::format("One unknown function of {} (ln Bayes factor {:.1f}) is more likely than two names at "

@@ -176,8 +176,7 @@ std::string failures(const std::vector<Judged>& cases) {
 std::string comparison(const Settings& settings) {
   std::string text =
       "| setting | top-1 | candidate set holds it | single names right | nulls named | two effects exact | "
-      "outside "
-      "named | median shrink | calibration error |\n|---|---|---|---|---|---|---|---|---|\n";
+      "outside named | median shrink | calibration error |\n|---|---|---|---|---|---|---|---|---|\n";
   for (const auto& [setting, cases] : settings) {
     const Scores s = score(cases);
     text += fmt::format("| {} | {} | {} | {} | {} | {} | {} | {} | {:.3f} |\n", title(setting, settings),

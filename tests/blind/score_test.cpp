@@ -1,5 +1,4 @@
 #include "score.h"
-#include "case_list.h"
 
 #include <algorithm>
 #include <catch2/catch.hpp>

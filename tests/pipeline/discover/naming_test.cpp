@@ -29,6 +29,15 @@ FormCoordinate over(const Eigen::VectorXd& x) {
   return c;
 }
 
+/// A free shape of x, as far as a verdict looks at it.
+Shape free_shape(double log_evidence, int factors) {
+  Shape shape;
+  shape.over = "x";
+  shape.factors = factors;
+  shape.log_evidence = log_evidence;
+  return shape;
+}
+
 double log_density(const Eigen::VectorXd& value, const Eigen::MatrixXd& covariance) {
   const Eigen::LLT<Eigen::MatrixXd> root(covariance);
   return -0.5 * value.dot(root.solve(value)) - root.matrixLLT().diagonal().array().log().sum();
@@ -186,17 +195,12 @@ TEST_CASE("a free shape is one of many: it must say more than its choosing costs
   const double gain = result.best_gain();
   REQUIRE(gain > 3.0);
   REQUIRE(gain < 12.0);
-  const auto answer_with = [&](double more, int factors) {
-    Shape shape;
-    shape.over = "x";
-    shape.factors = factors;
-    shape.log_evidence = gain + more;
+  const auto answer_with = [&](double more, int factors, const VerdictOptions& options = {}) {
     Evidence evidence;
     evidence.gate_p = 0.0;
-    evidence.gap_shapes.assign(20, shape);
-    shape.log_evidence = 4.0;
-    evidence.rest_shapes.assign(1, shape);
-    return decide(model, result, evidence).answer;
+    evidence.gap_shapes.assign(20, free_shape(gain + more, factors));
+    evidence.rest_shapes.assign(1, free_shape(4.0, factors));
+    return decide(model, result, evidence, options).answer;
   };
   const double price = 3.0 + std::log(20.0);
   CHECK(answer_with(price - 0.5, 1) == Answer::named_incomplete);
@@ -204,6 +208,37 @@ TEST_CASE("a free shape is one of many: it must say more than its choosing costs
   // A function of two factors is as likely as two effects: 0.1 before the data, where one has 0.4.
   CHECK(answer_with(price + std::log(4.0) - 0.1, 2) == Answer::named_incomplete);
   CHECK(answer_with(price + std::log(4.0) + 0.1, 2) == Answer::unknown);
+  CHECK(answer_with(price + 0.5, 1, {.unknown = false}) == Answer::named_incomplete);
+}
+
+TEST_CASE("where UNKNOWN is off a gap that only a free shape sees is none", "[discover][verdict]") {
+  const Line line;
+  const ForwardModel model = line.model(normal(0.0, 0.4), false);
+  const SearchResult result = search(model, {.value = measured(line, 0.0, 0.1)->value(),
+                                             .covariance = 0.01 * Eigen::MatrixXd::Identity(12, 12)});
+  REQUIRE(result.best_gain() < 3.0);
+  Evidence evidence;
+  evidence.gate_p = 0.0;
+  evidence.gap_shapes.assign(1, free_shape(20.0, 1));
+  CHECK(decide(model, result, evidence).answer == Answer::unknown);
+  CHECK(decide(model, result, evidence, {.unknown = false}).answer == Answer::no_gap);
+}
+
+TEST_CASE("by Akaike's criterion a hypothesis pays one for each number and nothing for its prior",
+          "[discover][search]") {
+  const Line line;
+  const Observations seen{.value = measured(line, 0.5, 0.1)->value(),
+                          .covariance = 0.01 * Eigen::MatrixXd::Identity(12, 12)};
+  const SearchResult result = search(line.model(normal(0.0, 0.4), false), seen, {.akaike = true});
+  const Scored* bend = result.find({0});
+  REQUIRE(bend != nullptr);
+  CHECK(bend->fit.log_evidence - result.log_evidence_none ==
+        Approx(0.5 * (result.baseline.chi2 - bend->fit.chi2) - 1.0));
+  // Of a number with a wide prior the evidence thinks less.
+  const SearchResult wide = search(line.model(normal(0.0, 40.0), false), seen);
+  const SearchResult wide_akaike = search(line.model(normal(0.0, 40.0), false), seen, {.akaike = true});
+  CHECK(wide.best_gain() < result.best_gain() - 2.0);
+  CHECK(wide_akaike.best_gain() == Approx(result.best_gain()).margin(0.3));
 }
 
 TEST_CASE("two names on one factor must say more than one unknown function of it", "[discover][verdict]") {
@@ -227,13 +262,9 @@ TEST_CASE("two names on one factor must say more than one unknown function of it
   REQUIRE(result.best().fit.hypothesis == Hypothesis{0, 1});
   const double gain = result.best_gain();
   const auto decision_with = [&](double more, int factors) {
-    Shape shape;
-    shape.over = "x";
-    shape.factors = factors;
-    shape.log_evidence = gain + more;
     Evidence evidence;
     evidence.gate_p = 0.0;
-    evidence.gap_shapes.assign(8, shape);
+    evidence.gap_shapes.assign(8, free_shape(gain + more, factors));
     return decide(model, result, evidence);
   };
   // One effect has 0.2 before the data and so has the function, shared by eight factors; the pair has 0.1.
