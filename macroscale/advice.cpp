@@ -26,8 +26,7 @@ std::string while_closing(const StampingFailure& failure, const StampingSpec& sp
   if (crushed || failure.kind == FailureKind::pressed_through)
     return fmt::format(
         "The binder crushes the fabric before the punch moves: less force ({}), or a larger blank that "
-        "spreads "
-        "it.",
+        "spreads it.",
         other_force(spec, 0.3));
   switch (failure.kind) {
     case FailureKind::lost_tool:
@@ -65,7 +64,7 @@ std::string advice_for(const StampingFailure& failure, const StampingSpec& spec,
     case FailureKind::friction_loads:
       return fmt::format(
           "Contact comes and goes with the friction it makes. Smaller steps ({}), or a law that "
-          "does not drag at the first touch (friction.law: power).",
+          "does not drag at the first touch (friction.law: stribeck, friction.form: power).",
           finer_steps(spec));
     case FailureKind::not_finite:
       return "A law has no value at the point named above: look at the friction parameters and effects "
@@ -81,8 +80,9 @@ std::string advice_for(const StampingFailure& failure, const StampingSpec& spec,
   if (summary.falling_branch)
     return fmt::format(
         "Friction falls with speed somewhere, so slip sets in by jumps and the solution may not be "
-        "unique. Smaller steps ({}), or a law that does not fall (friction.law: power) to see "
-        "whether that is all.",
+        "unique. Smaller steps ({}), or a law that does not fall (friction.law: stribeck, friction.form: "
+        "power) "
+        "to see whether that is all.",
         finer_steps(spec));
   return fmt::format("Try smaller steps ({}), or look at the last state (blank_failed.vtu) for a fold.",
                      finer_steps(spec));
