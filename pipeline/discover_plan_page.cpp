@@ -75,7 +75,6 @@ std::string cells_table(const std::vector<discover::CouponCell>& cells) {
 std::string plan_html(const PlanRecord& record) {
   std::string out = page_head(record.name);
   out += fmt::format(
-      "<style>.on-dark text.figure,.on-light text.figure{{fill:var(--figure);font-size:10px}}</style>"
       "<header>\n<p class=\"kind\">heddle · Plan</p>\n<h1>{}</h1>\n<p class=\"lead\">What {} could tell "
       "before "
       "anybody pulls a coupon, and as many pulls that tell more.</p>\n</header>\n",

@@ -43,11 +43,8 @@ Canvas draw(const discover::ForwardModel& forward, const discover::Isolability& 
       fill(canvas, x, y, colour_of(ColourMap::height, share));
       const int percent = static_cast<int>(std::lround(100.0 * discover::swap_rate(lambda)));
       if (percent < 2) continue;
-      // Figures stand on dark cells of either page.
-      canvas.begin_group(share < 0.5 ? "style=\"--figure:#fff\" class=\"on-dark\""
-                                     : "style=\"--figure:#1f2328\" class=\"on-light\"");
-      canvas.text({x + 0.5 * cell, y + 0.5 * cell + 4.0}, std::to_string(percent), Anchor::middle, "figure");
-      canvas.end_group();
+      canvas.text({x + 0.5 * cell, y + 0.5 * cell + 4.0}, std::to_string(percent), Anchor::middle,
+                  share < 0.5 ? "on-dark" : "on-light");
     }
   }
   return canvas;

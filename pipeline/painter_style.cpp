@@ -82,7 +82,8 @@ std::string picture_style() {
       ".grid,.axis,.frame,.outline,.line,.scale{fill:none}.grid,.axis{stroke-width:1}.frame{stroke-width:.8}"
       ".outline{stroke-width:1;stroke-dasharray:5 4}.line{stroke-width:1.8;stroke-linejoin:round;"
       "stroke-linecap:round}.edge{stroke-width:.8;stroke-linejoin:round}.scale{stroke-width:1.6}"
-      ".thread{fill:none;stroke:#fff;stroke-opacity:.5;stroke-width:.6}";
+      ".thread{fill:none;stroke:#fff;stroke-opacity:.5;stroke-width:.6}"
+      ".picture text.on-dark{fill:#fff;font-size:10px}.picture text.on-light{fill:#1f2328;font-size:10px}";
   for (int i = 1; i < series_styles; ++i) {
     out += fmt::format(".line.s{}{{stroke-dasharray:{}}}", i, dashes[static_cast<std::size_t>(i)]);
   }
