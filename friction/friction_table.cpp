@@ -4,7 +4,7 @@
 #include <array>
 #include <stdexcept>
 
-#include "core/csv.h"
+#include "core/measured_table.h"
 #include "core/text_file.h"
 #include "core/units.h"
 #include "friction/friction_test.h"
@@ -13,115 +13,26 @@ namespace heddle::friction {
 
 namespace {
 
-/// A number of the row, and the unit in which the table holds it.
-struct Column {
-  std::string_view name;
-  std::string_view unit;
-  bool required;
-  void (*store)(FrictionTestRow&, double);
-  std::optional<double> (*load)(const FrictionTestRow&);
-};
-
-template <auto member>
-constexpr Column column(std::string_view name, std::string_view unit, bool required) {
-  return {.name = name,
-          .unit = unit,
-          .required = required,
-          .store = [](FrictionTestRow& row, double value) { row.*member = value; },
-          .load = [](const FrictionTestRow& row) { return std::optional<double>(row.*member); }};
-}
-
 using Row = FrictionTestRow;
-constexpr std::array columns{
-    column<&Row::velocity>("velocity_mm_s", "mm/s", true),
-    column<&Row::normal_force>("normal_force_N", "N", true),
-    column<&Row::tool_temperature>("tool_temperature_C", "degC", true),
-    column<&Row::fabric_temperature>("fabric_temperature_C", "degC", true),
-    column<&Row::orientation>("orientation_deg", "deg", false),
-    column<&Row::measured_force>("force_measured_N", "N", false),
-    column<&Row::paper_model_force>("force_paper_model_N", "N", false),
-};
+using Column = TableColumn<Row>;
 constexpr std::string_view name_column = "case";
+constexpr std::array columns{
+    Column{name_column, "", &Row::name, true},
+    Column{"velocity_mm_s", "mm/s", &Row::velocity, true},
+    Column{"normal_force_N", "N", &Row::normal_force, true},
+    Column{"tool_temperature_C", "degC", &Row::tool_temperature, true},
+    Column{"fabric_temperature_C", "degC", &Row::fabric_temperature, true},
+    Column{"orientation_deg", "deg", &Row::orientation},
+    Column{"force_measured_N", "N", &Row::measured_force},
+    Column{"force_paper_model_N", "N", &Row::paper_model_force},
+};
 /// Written by our own friction test; results, not conditions.
 constexpr std::array<std::string_view, 3> passed_over{"friction_coefficient", "pull_force_N", "force_error"};
-
-const Column* find_column(std::string_view name) {
-  const auto found = std::ranges::find(columns, name, &Column::name);
-  return found == columns.end() ? nullptr : &*found;
-}
-
-std::string known_columns() {
-  std::string list(name_column);
-  for (const Column& known : columns) list += fmt::format(", {}", known.name);
-  return list;
-}
-
-class TableReader {
- public:
-  TableReader(const CsvTable& table, std::string file) : table_(table), file_(std::move(file)) {}
-
-  /// @throws InputError  if anything was wrong
-  std::vector<FrictionTestRow> rows() {
-    problems_ = table_.problems;
-    for (const std::string& name : header()) check_known(name);
-    check_present(name_column);
-    for (const Column& known : columns)
-      if (known.required) check_present(known.name);
-    std::vector<FrictionTestRow> rows;
-    for (const CsvRow& line : table_.rows) {
-      rows.emplace_back();
-      for (std::size_t i = 0; i < line.cells.size(); ++i)
-        read_cell(rows.back(), header()[i], line.cells[i], line.line);
-    }
-    if (!problems_.empty()) throw InputError(std::move(problems_));
-    return rows;
-  }
-
- private:
-  const std::vector<std::string>& header() const { return table_.header.cells; }
-
-  void check_known(std::string_view name) {
-    if (name == name_column || find_column(name) || std::ranges::count(passed_over, name) > 0) return;
-    add("friction.table.column.unknown"_rule, "", "is no column of a friction-test table",
-        "Known columns: " + known_columns() + ".", name, table_.header.line);
-  }
-
-  void check_present(std::string_view name) {
-    const auto count = std::ranges::count(header(), name);
-    if (count == 1) return;
-    add(count == 0 ? "friction.table.column.missing"_rule : "friction.table.column.twice"_rule, "",
-        count == 0 ? "must be a column of the table" : "must be there once",
-        "Known columns: " + known_columns() + ".", name, table_.header.line);
-  }
-
-  void read_cell(FrictionTestRow& row, std::string_view name, std::string_view cell, int line) {
-    if (name == name_column) row.name = cell;
-    const Column* known = find_column(name);
-    if (!known || (cell.empty() && !known->required)) return;
-    const Reading reading = read_quantity(fmt::format("{} {}", cell, known->unit), known->unit);
-    if (reading.ok()) {
-      known->store(row, reading.value);
-    } else {
-      add("friction.table.number"_rule, std::string(cell), "must be a number in " + std::string(known->unit),
-          "Write digits only; the unit stands in the column's name.", name, line);
-    }
-  }
-
-  void add(Rule id, std::string value, std::string rule, std::string way_out, std::string_view key,
-           int line) {
-    problems_.push_back({.id = id,
-                         .key = std::string(key),
-                         .value = std::move(value),
-                         .rule = std::move(rule),
-                         .way_out = std::move(way_out),
-                         .file = file_,
-                         .line = line});
-  }
-
-  const CsvTable& table_;
-  std::string file_;
-  Problems problems_;
-};
+constexpr TableRules rules{.what = "a friction-test table",
+                           .unknown = "friction.table.column.unknown"_rule,
+                           .missing = "friction.table.column.missing"_rule,
+                           .twice = "friction.table.column.twice"_rule,
+                           .number = "friction.table.number"_rule};
 
 /// The number alone, in the column's unit.
 std::string in_unit(double value, std::string_view unit) {
@@ -139,9 +50,11 @@ std::string cell_of(const FrictionTestRow& row, const FrictionTestResult& result
   if (name == "friction_coefficient") return fmt::format("{}", result.mu);
   if (name == "pull_force_N") return fmt::format("{}", result.pull_force);
   if (name == "force_error") return result.relative_error ? fmt::format("{}", *result.relative_error) : "";
-  const Column* known = find_column(name);
-  const std::optional<double> value = known->load(row);
-  return value ? in_unit(*value, known->unit) : "";
+  const auto column = std::ranges::find(columns, name, &Column::name);
+  std::optional<double> value;
+  if (const auto* number = std::get_if<double Row::*>(&column->member)) value = row.*(*number);
+  if (const auto* maybe = std::get_if<std::optional<double> Row::*>(&column->member)) value = row.*(*maybe);
+  return value ? in_unit(*value, column->unit) : "";
 }
 
 }  // namespace
@@ -170,7 +83,10 @@ std::string format_friction_table(std::span<const FrictionTestRow> rows,
 }
 
 std::vector<FrictionTestRow> parse_friction_table(std::string_view text, const std::string& file) {
-  return TableReader(parse_csv(text, file), file).rows();
+  TableProblems problems{file};
+  std::vector<FrictionTestRow> rows = read_rows(parse_csv(text, file), columns, rules, problems, passed_over);
+  problems.throw_if_any();
+  return rows;
 }
 
 std::vector<FrictionTestRow> read_friction_table(const std::string& path) {

@@ -9,10 +9,8 @@
 #include <map>
 #include <numbers>
 #include <optional>
-#include <set>
 
-#include "core/csv.h"
-#include "core/problem.h"
+#include "core/measured_table.h"
 #include "core/text_file.h"
 #include "core/units.h"
 #include "friction/test_design.h"
@@ -24,117 +22,86 @@ namespace {
 
 using discover::CouponCell;
 
-struct Column {
-  std::string_view name, unit;
-  bool required = false;
-  double above = -INFINITY;  ///< numbers must be above this
+/// One line of the table; what is not there is the default.
+struct Line {
+  int line = 0;
+  std::string name, other_name, day, replicates;
+  std::optional<double> velocity, normal_force, tool_temperature, fabric_temperature, orientation, dwell;
 };
 
-/// In the order of discover::knobs().
-constexpr std::array columns{
-    Column{"velocity_mm_s", "mm/s", true, 0.0}, Column{"normal_force_N", "N", true, 0.0},
-    Column{"tool_temperature_C", "degC", true}, Column{"fabric_temperature_C", "degC", true},
-    Column{"orientation_deg", "deg"},           Column{"dwell_s", "s"}};
-constexpr std::array<std::string_view, 4> names{"condition_id", "case", "day_id", "replicates"};
+using Column = TableColumn<Line>;
+constexpr std::array columns{Column{"condition_id", "", &Line::name},
+                             Column{"case", "", &Line::other_name},
+                             Column{"day_id", "", &Line::day},
+                             Column{"replicates", "", &Line::replicates},
+                             Column{"velocity_mm_s", "mm/s", &Line::velocity, true},
+                             Column{"normal_force_N", "N", &Line::normal_force, true},
+                             Column{"tool_temperature_C", "degC", &Line::tool_temperature, true},
+                             Column{"fabric_temperature_C", "degC", &Line::fabric_temperature, true},
+                             Column{"orientation_deg", "deg", &Line::orientation},
+                             Column{"dwell_s", "s", &Line::dwell}};
+constexpr TableRules rules{.what = "a design, whose header may also be parameter,unit,baseline,additional",
+                           .unknown = "discover.design.column.unknown"_rule,
+                           .missing = "discover.design.column.missing"_rule,
+                           .twice = "discover.design.column.twice"_rule,
+                           .number = "discover.design.number"_rule};
 
-std::vector<std::string_view> known_columns() {
-  std::vector<std::string_view> known;
-  for (const Column& column : columns) known.push_back(column.name);
-  known.insert(known.end(), names.begin(), names.end());
-  return known;
+int replicates_of(const std::string& text) {
+  int count = 0;
+  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), count);
+  return error == std::errc() && end == text.data() + text.size() ? count : 0;
 }
 
-class RowReader {
- public:
-  RowReader(const CsvTable& table, std::string file, const DesignDefaults& defaults)
-      : table_(table), file_(std::move(file)), defaults_(defaults), problems_(table.problems) {}
+/// Of what could be read.
+void check_line(const Line& line, bool has_replicates, TableProblems& problems) {
+  const auto demand = [&](std::string_view column, const std::optional<double>& value, const char* unit,
+                          bool zero_too, const char* rule) {
+    if (value && !(*value > 0.0 || (zero_too && *value == 0.0)))
+      problems.add("discover.design.range"_rule, column, write_quantity(*value, unit), rule,
+                   "Correct the cell.", line.line);
+  };
+  demand("velocity_mm_s", line.velocity, "mm/s", false, "must be positive");
+  demand("normal_force_N", line.normal_force, "N", false, "must be positive");
+  demand("tool_temperature_C", line.tool_temperature, "degC", false, "is below absolute zero");
+  demand("fabric_temperature_C", line.fabric_temperature, "degC", false, "is below absolute zero");
+  demand("dwell_s", line.dwell, "s", true, "must be 0 or more");
+  const int replicates = replicates_of(line.replicates);
+  if (has_replicates && (replicates < 1 || replicates > 1000))
+    problems.add("discover.design.replicates"_rule, "replicates", line.replicates,
+                 "must be a whole number from 1 to 1000", "Five samples of each condition are usual.",
+                 line.line);
+}
 
-  PlannedDesign read() {
-    check_columns();
-    if (table_.rows.empty() && problems_.empty())
-      add("discover.design.empty"_rule, "rows", "", "must hold a condition", "Write one row a condition.", 0);
-    PlannedDesign design;
-    for (const CsvRow& row : table_.rows) design.cells.push_back(cell_of(row));
-    if (!problems_.empty()) throw InputError(std::move(problems_));
-    return design;
+PlannedDesign one_row_a_condition(const CsvTable& table, const std::string& file,
+                                  const DesignDefaults& defaults) {
+  const bool has_replicates = has_column(table, "replicates");
+  TableProblems problems{file};
+  const std::vector<Line> lines = read_rows(table, columns, rules, problems);
+  if (table.rows.empty() && problems.list.empty())
+    problems.add("discover.design.empty"_rule, "rows", "", "must hold a condition",
+                 "Write one row a condition.", 0);
+  for (const Line& line : lines) check_line(line, has_replicates, problems);
+  problems.throw_if_any();
+
+  PlannedDesign design;
+  std::map<std::string, std::size_t> days;
+  for (const Line& line : lines) {
+    CouponCell& cell = design.cells.emplace_back();
+    cell.pull.name = line.name.empty() ? line.other_name : line.name;
+    cell.pull.velocity = *line.velocity;
+    cell.pull.normal_force = *line.normal_force;
+    cell.pull.tool_temperature = *line.tool_temperature;
+    cell.pull.fabric_temperature = *line.fabric_temperature;
+    cell.pull.orientation = line.orientation.value_or(0.0);
+    cell.dwell = line.dwell.value_or(defaults.dwell);
+    cell.day = days.try_emplace(line.day, days.size()).first->second;
+    cell.samples = has_replicates ? replicates_of(line.replicates) : defaults.replicates;
   }
-
-  bool has(std::string_view column) const { return std::ranges::count(table_.header.cells, column) > 0; }
-
- private:
-  void add(Rule id, std::string_view key, std::string value, std::string rule, std::string way_out,
-           int line) {
-    problems_.push_back(
-        {id, std::string(key), std::move(value), std::move(rule), std::move(way_out), file_, line});
-  }
-
-  void check_columns() {
-    const std::vector<std::string>& header = table_.header.cells;
-    for (const std::string& name : header)
-      if (std::ranges::count(known_columns(), name) == 0)
-        add("discover.design.column.unknown"_rule, name, "", "is no column of a design",
-            fmt::format("Known columns: {}; or the header parameter,unit,baseline,additional.",
-                        fmt::join(known_columns(), ", ")),
-            table_.header.line);
-    for (const Column& column : columns)
-      if (column.required && !has(column.name))
-        add("discover.design.column.missing"_rule, column.name, "", "must be a column of the design",
-            "The unit stands in the name.", table_.header.line);
-    if (std::set<std::string>(header.begin(), header.end()).size() < header.size())
-      add("discover.design.column.twice"_rule, "header", "", "names a column twice", "Leave one of them out.",
-          table_.header.line);
-  }
-
-  CouponCell cell_of(const CsvRow& row) {
-    CouponCell cell;
-    cell.dwell = defaults_.dwell;
-    cell.samples = defaults_.replicates;
-    for (std::size_t i = 0; i < row.cells.size(); ++i) {
-      const std::string &name = table_.header.cells[i], &text = row.cells[i];
-      if (name == "condition_id" || name == "case") cell.pull.name = text;
-      if (name == "day_id") cell.day = days_.try_emplace(text, days_.size()).first->second;
-      if (name == "replicates") cell.samples = replicates(text, row.line);
-      const auto column = std::ranges::find(columns, name, &Column::name);
-      if (column != columns.end())
-        if (const auto value = number(*column, text, row.line))
-          discover::knobs()[static_cast<std::size_t>(column - columns.begin())].set(cell, *value);
-    }
-    return cell;
-  }
-
-  int replicates(const std::string& text, int line) {
-    int count = 0;
-    const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), count);
-    if (error == std::errc() && end == text.data() + text.size() && count >= 1 && count <= 1000) return count;
-    add("discover.design.replicates"_rule, "replicates", text, "must be a whole number from 1 to 1000",
-        "Five samples of each condition are usual.", line);
-    return defaults_.replicates;
-  }
-
-  std::optional<double> number(const Column& column, const std::string& text, int line) {
-    const Reading reading = read_quantity(fmt::format("{} {}", text, column.unit), column.unit);
-    if (!reading.ok()) {
-      add("discover.design.number"_rule, column.name, text, "must be a number",
-          fmt::format("In {}, as the column says.", column.unit), line);
-      return {};
-    }
-    const bool cold = column.unit == "degC" && !(reading.value > 0.0);
-    const bool negative_rest = column.name == "dwell_s" && reading.value < 0.0;
-    if (!cold && !negative_rest && reading.value > column.above) return reading.value;
-    add("discover.design.range"_rule, column.name, text,
-        cold            ? "is below absolute zero"
-        : negative_rest ? "must be 0 or more"
-                        : "must be positive",
-        "Correct the cell.", line);
-    return {};
-  }
-
-  const CsvTable& table_;
-  std::string file_;
-  const DesignDefaults& defaults_;
-  Problems problems_;
-  std::map<std::string, std::size_t> days_;
-};
+  if (!has_replicates)
+    design.notes.push_back(
+        fmt::format("No replicates: {} samples of each condition ASSUMED.", defaults.replicates));
+  return design;
+}
 
 PlannedDesign one_at_a_time(std::string_view text, const std::string& file, const DesignDefaults& defaults) {
   const friction::TestDesign factors = friction::parse_test_design(std::string(text), file);
@@ -174,20 +141,10 @@ void demand_variety(const std::vector<CouponCell>& cells, const std::string& fil
 PlannedDesign parse_design(std::string_view text, const std::string& file, const DesignDefaults& defaults) {
   const CsvTable table = parse_csv(text, file);
   const bool factors = !table.header.cells.empty() && table.header.cells.front() == "parameter";
-  PlannedDesign design;
-  bool has_days = false;
-  if (factors) {
-    design = one_at_a_time(text, file, defaults);
-  } else {
-    RowReader reader(table, file, defaults);
-    design = reader.read();
-    has_days = reader.has("day_id");
-    if (!reader.has("replicates"))
-      design.notes.push_back(
-          fmt::format("No replicates: {} samples of each condition ASSUMED.", defaults.replicates));
-  }
+  PlannedDesign design =
+      factors ? one_at_a_time(text, file, defaults) : one_row_a_condition(table, file, defaults);
   demand_variety(design.cells, file);
-  if (!has_days) spread_over_days(design, defaults.cells_a_day);
+  if (factors || !has_column(table, "day_id")) spread_over_days(design, defaults.cells_a_day);
   discover::number_conditions(design.cells);
   for (CouponCell& cell : design.cells)
     if (cell.pull.name.empty()) cell.pull.name = fmt::format("c{:02}", cell.condition + 1);

@@ -1,17 +1,16 @@
 #include "pipeline/shear_tests.h"
 
 #include <fmt/format.h>
-#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <array>
 #include <cmath>
 #include <map>
 #include <numbers>
-#include <set>
+#include <optional>
 #include <tuple>
 
-#include "core/csv.h"
+#include "core/measured_table.h"
 #include "core/units.h"
 
 namespace heddle::pipeline {
@@ -23,179 +22,99 @@ struct Line {
   int line = 0;
   std::string test, condition, sample, day;
   double frame_side = 0.0, fabric_side = 0.0, strip_length = 0.0, strip_width = 0.0;
-  double speed = 0.0, temperature = 0.0, displacement = 0.0, force = 0.0, angle = 0.0;
-  bool has_angle = false;
+  double speed = 0.0, temperature = 0.0, displacement = 0.0, force = 0.0;
+  std::optional<double> angle;
 };
 
-struct NameColumn {
-  std::string_view name;
-  std::string Line::*member;
-  bool required;
-};
-constexpr std::array names{
-    NameColumn{"test", &Line::test, true}, NameColumn{"condition_id", &Line::condition, true},
-    NameColumn{"sample_id", &Line::sample, true}, NameColumn{"day_id", &Line::day, false}};
-struct Column {
-  std::string_view name, unit;
-  double Line::*member;
-  bool required;
-};
-constexpr std::array numbers{Column{"speed_mm_s", "mm/s", &Line::speed, true},
+using Column = TableColumn<Line>;
+constexpr std::array columns{Column{"test", "", &Line::test, true},
+                             Column{"condition_id", "", &Line::condition, true},
+                             Column{"sample_id", "", &Line::sample, true},
+                             Column{"day_id", "", &Line::day},
+                             Column{"speed_mm_s", "mm/s", &Line::speed, true},
                              Column{"fabric_temperature_C", "degC", &Line::temperature, true},
                              Column{"displacement_mm", "mm", &Line::displacement, true},
                              Column{"force_N", "N", &Line::force, true},
-                             Column{"frame_side_mm", "mm", &Line::frame_side, false},
-                             Column{"fabric_side_mm", "mm", &Line::fabric_side, false},
-                             Column{"strip_length_mm", "mm", &Line::strip_length, false},
-                             Column{"strip_width_mm", "mm", &Line::strip_width, false},
-                             Column{"shear_angle_deg", "deg", &Line::angle, false}};
+                             Column{"frame_side_mm", "mm", &Line::frame_side},
+                             Column{"fabric_side_mm", "mm", &Line::fabric_side},
+                             Column{"strip_length_mm", "mm", &Line::strip_length},
+                             Column{"strip_width_mm", "mm", &Line::strip_width},
+                             Column{"shear_angle_deg", "deg", &Line::angle}};
+constexpr TableRules rules{.what = "a table of shear tests",
+                           .unknown = "discover.shear.column.unknown"_rule,
+                           .missing = "discover.shear.column.missing"_rule,
+                           .twice = "discover.shear.column.twice"_rule,
+                           .number = "discover.shear.number"_rule};
 
-std::vector<std::string_view> known_columns() {
-  std::vector<std::string_view> list;
-  for (const NameColumn& column : names) list.push_back(column.name);
-  for (const Column& column : numbers) list.push_back(column.name);
-  return list;
+/// What the first line of a curve says of all of it.
+void check_test(const Line& line, TableProblems& problems) {
+  const auto size = [&](double value, std::string_view column) {
+    if (!(value > 0.0))
+      problems.add("discover.shear.size"_rule, column, write_quantity(value, "mm"),
+                   fmt::format("must be positive in a {}", line.test),
+                   "Give the size of frame or strip in mm.", line.line);
+    return value > 0.0;
+  };
+  if (line.test == "picture_frame") {
+    if (size(line.frame_side, "frame_side_mm") && line.fabric_side > line.frame_side)
+      problems.add("discover.shear.fabric"_rule, "fabric_side_mm", write_quantity(line.fabric_side, "mm"),
+                   "is larger than the frame between its hinges", "Give the side of the fabric that shears.",
+                   line.line);
+  } else if (line.test == "bias_extension") {
+    const bool both = size(line.strip_length, "strip_length_mm") && size(line.strip_width, "strip_width_mm");
+    if (both && line.strip_length < 2.0 * line.strip_width)
+      problems.add(
+          "discover.shear.strip"_rule, "strip_length_mm", write_quantity(line.strip_length, "mm"),
+          fmt::format("must be at least twice strip_width_mm ({}): else no part of the strip shears freely",
+                      write_quantity(line.strip_width, "mm")),
+          "Leave the sample out.", line.line);
+  } else {
+    problems.add("discover.shear.test"_rule, "test", line.test, "must be picture_frame or bias_extension",
+                 "Other tests are not read.", line.line);
+  }
+  if (!(line.speed > 0.0))
+    problems.add("discover.shear.speed"_rule, "speed_mm_s", write_quantity(line.speed, "mm/s"),
+                 "must be positive", "Give the speed of the crosshead.", line.line);
 }
 
-class Reader {
- public:
-  Reader(std::string file, Problems& problems) : file_(std::move(file)), problems_(problems) {}
-
-  std::vector<Line> lines(const CsvTable& table) {
-    problems_.insert(problems_.end(), table.problems.begin(), table.problems.end());
-    check_columns(table);
-    std::vector<Line> lines;
-    for (const CsvRow& row : table.rows) {
-      lines.emplace_back();
-      lines.back().line = row.line;
-      for (std::size_t i = 0; i < row.cells.size(); ++i)
-        read_cell(lines.back(), table.header.cells[i], row.cells[i]);
+void check_curve(const std::vector<const Line*>& curve, TableProblems& problems) {
+  for (std::size_t k = 1; k < curve.size(); ++k)
+    if (!(curve[k]->displacement > curve[k - 1]->displacement)) {
+      problems.add(
+          "discover.shear.curve"_rule, "displacement_mm", write_quantity(curve[k]->displacement, "mm"),
+          fmt::format("must be larger than on the line before it of sample {}", curve[k]->sample),
+          "Loading only, in the order of the crosshead; each piece its own sample_id.", curve[k]->line);
+      return;
     }
-    if (lines.empty())
-      add("discover.shear.empty"_rule, "data", "", "must hold at least one curve",
-          "One line a point of a curve, after the header line.", 0);
-    return lines;
-  }
+  if (curve.size() < 4)
+    problems.add(
+        "discover.shear.short"_rule, "sample_id", curve.front()->sample,
+        fmt::format("has {} {} only, which is no curve", curve.size(), curve.size() == 1 ? "line" : "lines"),
+        "Give at least four points of each piece.", curve.front()->line);
+}
 
-  /// What the first line of a curve says of all of it.
-  void check_test(const Line& line) {
-    const auto size = [&](double value, std::string_view column) {
-      if (!(value > 0.0))
-        add("discover.shear.size"_rule, column, write_quantity(value, "mm"),
-            fmt::format("must be positive in a {}", line.test), "Give the size of frame or strip in mm.",
-            line.line);
-      return value > 0.0;
-    };
-    if (line.test == "picture_frame") {
-      if (size(line.frame_side, "frame_side_mm") && line.fabric_side > line.frame_side)
-        add("discover.shear.fabric"_rule, "fabric_side_mm", write_quantity(line.fabric_side, "mm"),
-            "is larger than the frame between its hinges", "Give the side of the fabric that shears.",
-            line.line);
-    } else if (line.test == "bias_extension") {
-      const bool both =
-          size(line.strip_length, "strip_length_mm") && size(line.strip_width, "strip_width_mm");
-      if (both && line.strip_length < 2.0 * line.strip_width)
-        add("discover.shear.strip"_rule, "strip_length_mm", write_quantity(line.strip_length, "mm"),
-            fmt::format("must be at least twice strip_width_mm ({}): else no part of the strip shears freely",
-                        write_quantity(line.strip_width, "mm")),
-            "Leave the sample out.", line.line);
-    } else {
-      add("discover.shear.test"_rule, "test", line.test, "must be picture_frame or bias_extension",
-          "Other tests are not read.", line.line);
-    }
-    if (!(line.speed > 0.0))
-      add("discover.shear.speed"_rule, "speed_mm_s", write_quantity(line.speed, "mm/s"), "must be positive",
-          "Give the speed of the crosshead.", line.line);
-  }
+void check_reach(const Line& line, double most, TableProblems& problems) {
+  if (line.displacement >= most)
+    problems.add("discover.shear.reach"_rule, "displacement_mm", write_quantity(line.displacement, "mm"),
+                 fmt::format("is beyond {:.4g} mm, where the tows would lie along the pull", 1e3 * most),
+                 "Correct the displacement or the size of frame or strip.", line.line);
+}
 
-  void check_curve(const std::vector<const Line*>& curve) {
-    for (std::size_t k = 1; k < curve.size(); ++k)
-      if (!(curve[k]->displacement > curve[k - 1]->displacement)) {
-        add("discover.shear.curve"_rule, "displacement_mm", write_quantity(curve[k]->displacement, "mm"),
-            fmt::format("must be larger than on the line before it of sample {}", curve[k]->sample),
-            "Loading only, in the order of the crosshead; each piece its own sample_id.", curve[k]->line);
-        return;
-      }
-    if (curve.size() < 4)
-      add("discover.shear.short"_rule, "sample_id", curve.front()->sample,
-          fmt::format("has {} {} only, which is no curve", curve.size(),
-                      curve.size() == 1 ? "line" : "lines"),
-          "Give at least four points of each piece.", curve.front()->line);
+/// Said once of the table, where its largest values look like another unit.
+void check_units(const std::vector<Line>& lines, TableProblems& problems) {
+  double way = 0.0, force = 0.0;
+  for (const Line& line : lines) {
+    way = std::max(way, line.displacement);
+    force = std::max(force, line.force);
   }
-
-  void check_reach(const Line& line, double most) {
-    if (line.displacement >= most)
-      add("discover.shear.reach"_rule, "displacement_mm", write_quantity(line.displacement, "mm"),
-          fmt::format("is beyond {:.4g} mm, where the tows would lie along the pull", 1e3 * most),
-          "Correct the displacement or the size of frame or strip.", line.line);
-  }
-
-  /// Said once of the table, where its largest values look like another unit.
-  void check_units(const std::vector<Line>& lines) {
-    double way = 0.0, force = 0.0;
-    for (const Line& line : lines) {
-      way = std::max(way, line.displacement);
-      force = std::max(force, line.force);
-    }
-    if (way < 1e-3)
-      add("discover.shear.unit.displacement"_rule, "displacement_mm", write_quantity(way, "mm"),
-          "is the largest of the table, which shears nothing; is it in metres?", "Write it in mm.", 0);
-    if (force < 0.05)
-      add("discover.shear.unit.force"_rule, "force_N", write_quantity(force, "N"),
-          "is the largest of the table, less than any fabric asks for; is it in kN?", "Write it in N.", 0);
-  }
-
- private:
-  void add(RuleId id, std::string_view key, std::string value, std::string rule, std::string way_out,
-           int line) {
-    problems_.push_back({.id = std::move(id),
-                         .key = std::string(key),
-                         .value = std::move(value),
-                         .rule = std::move(rule),
-                         .way_out = std::move(way_out),
-                         .file = file_,
-                         .line = line});
-  }
-
-  void check_columns(const CsvTable& table) {
-    const std::vector<std::string>& header = table.header.cells;
-    const auto known = known_columns();
-    const std::string list = fmt::format("Known columns: {}.", fmt::join(known, ", "));
-    for (const std::string& name : header)
-      if (std::ranges::count(known, name) == 0)
-        add("discover.shear.column.unknown"_rule, name, "", "is no column of a table of shear tests", list,
-            table.header.line);
-    const auto demand = [&](std::string_view name, bool required) {
-      if (required && std::ranges::count(header, name) == 0)
-        add("discover.shear.column.missing"_rule, name, "", "must be a column of the table", list,
-            table.header.line);
-    };
-    for (const NameColumn& column : names) demand(column.name, column.required);
-    for (const Column& column : numbers) demand(column.name, column.required);
-    if (std::set<std::string>(header.begin(), header.end()).size() < header.size())
-      add("discover.shear.column.twice"_rule, "header", "", "names a column twice", "Leave one of them out.",
-          table.header.line);
-  }
-
-  void read_cell(Line& into, std::string_view name, const std::string& cell) {
-    for (const NameColumn& column : names)
-      if (column.name == name) into.*column.member = cell;
-    for (const Column& column : numbers) {
-      if (column.name != name || (cell.empty() && !column.required)) continue;
-      const heddle::Reading reading = read_quantity(fmt::format("{} {}", cell, column.unit), column.unit);
-      if (reading.ok() && std::isfinite(reading.value)) {
-        into.*column.member = reading.value;
-        into.has_angle = into.has_angle || column.name == "shear_angle_deg";
-      } else {
-        add("discover.shear.number"_rule, name, cell, fmt::format("must be a number in {}", column.unit),
-            "Write digits only; the unit stands in the column's name.", into.line);
-      }
-    }
-  }
-
-  std::string file_;
-  Problems& problems_;
-};
+  if (way < 1e-3)
+    problems.add("discover.shear.unit.displacement"_rule, "displacement_mm", write_quantity(way, "mm"),
+                 "is the largest of the table, which shears nothing; is it in metres?", "Write it in mm.", 0);
+  if (force < 0.05)
+    problems.add("discover.shear.unit.force"_rule, "force_N", write_quantity(force, "N"),
+                 "is the largest of the table, less than any fabric asks for; is it in kN?", "Write it in N.",
+                 0);
+}
 
 using Lines = std::vector<const Line*>;
 
@@ -243,7 +162,7 @@ double flow_at(const std::vector<ShearPoint>& points, double angle) {
 
 ShearPoint reduced(const ShearCurve& curve, const Line& line) {
   ShearPoint point{.displacement = line.displacement, .force = line.force};
-  point.shear_angle = line.has_angle ? line.angle : crosshead_angle(curve, line.displacement);
+  point.shear_angle = line.angle.value_or(crosshead_angle(curve, line.displacement));
   const double arm = reach(curve, point.shear_angle);
   point.shear_rate = curve.speed / arm;
   if (curve.test == ShearTest::picture_frame) {
@@ -291,24 +210,25 @@ const char* name_of(ShearTest test) {
 }
 
 bool is_shear_table(std::string_view text) {
-  const std::vector<std::string> header = parse_csv(text, "").header.cells;
-  return std::ranges::count(header, "test") > 0;
+  return has_column(parse_csv(text, ""), "test");
 }
 
 std::vector<ShearCurve> parse_shear_tests(std::string_view text, const std::string& file) {
-  Problems problems;
-  Reader reader(file, problems);
-  const std::vector<Line> lines = reader.lines(parse_csv(text, file));
-  if (!problems.empty()) throw InputError(std::move(problems));
-  reader.check_units(lines);
+  TableProblems problems{file};
+  const std::vector<Line> lines = read_rows(parse_csv(text, file), columns, rules, problems);
+  if (lines.empty())
+    problems.add("discover.shear.empty"_rule, "data", "", "must hold at least one curve",
+                 "One line a point of a curve, after the header line.", 0);
+  problems.throw_if_any();
+  check_units(lines, problems);
   const std::vector<Lines> pieces = pieces_of(lines);
   for (const Lines& piece : pieces) {
-    const std::size_t before = problems.size();
-    reader.check_test(*piece.front());
-    reader.check_curve(piece);
-    if (problems.size() == before) reader.check_reach(*piece.back(), furthest(*piece.front()));
+    const std::size_t before = problems.list.size();
+    check_test(*piece.front(), problems);
+    check_curve(piece, problems);
+    if (problems.list.size() == before) check_reach(*piece.back(), furthest(*piece.front()), problems);
   }
-  if (!problems.empty()) throw InputError(std::move(problems));
+  problems.throw_if_any();
   std::vector<ShearCurve> curves;
   for (const Lines& piece : pieces) curves.push_back(curve_of(piece));
   return curves;

@@ -6,10 +6,9 @@
 #include <array>
 #include <cmath>
 #include <map>
-#include <set>
 #include <tuple>
 
-#include "core/csv.h"
+#include "core/measured_table.h"
 #include "core/text_file.h"
 #include "core/units.h"
 
@@ -26,137 +25,46 @@ struct Line {
   std::optional<double> time, displacement, force, other_force, measured_normal_force;
 };
 
-template <class Number>
-struct Column {
-  std::string_view name, unit;
-  Number Line::*member;
-  bool required = false;
-};
-
-constexpr std::array conditions{
-    Column<double>{"velocity_mm_s", "mm/s", &Line::velocity, true},
-    Column<double>{"normal_force_N", "N", &Line::normal_force, true},
-    Column<double>{"tool_temperature_C", "degC", &Line::tool_temperature, true},
-    Column<double>{"fabric_temperature_C", "degC", &Line::fabric_temperature, true},
-    Column<double>{"orientation_deg", "deg", &Line::orientation},
-    Column<double>{"dwell_s", "s", &Line::dwell}};
-constexpr std::array measurements{
-    Column<std::optional<double>>{"time_s", "s", &Line::time},
-    Column<std::optional<double>>{"displacement_mm", "mm", &Line::displacement},
-    Column<std::optional<double>>{"force_measured_N", "N", &Line::force},
-    Column<std::optional<double>>{"pull_force_N", "N", &Line::other_force},
-    Column<std::optional<double>>{"normal_force_measured_N", "N", &Line::measured_normal_force}};
-constexpr std::array<std::pair<std::string_view, std::string Line::*>, 4> names{
-    {{"case", &Line::name},
-     {"condition_id", &Line::condition},
-     {"sample_id", &Line::sample},
-     {"day_id", &Line::day}}};
+using Column = TableColumn<Line>;
+constexpr std::array columns{Column{"case", "", &Line::name},
+                             Column{"condition_id", "", &Line::condition},
+                             Column{"sample_id", "", &Line::sample},
+                             Column{"day_id", "", &Line::day},
+                             Column{"velocity_mm_s", "mm/s", &Line::velocity, true},
+                             Column{"normal_force_N", "N", &Line::normal_force, true},
+                             Column{"tool_temperature_C", "degC", &Line::tool_temperature, true},
+                             Column{"fabric_temperature_C", "degC", &Line::fabric_temperature, true},
+                             Column{"orientation_deg", "deg", &Line::orientation},
+                             Column{"dwell_s", "s", &Line::dwell},
+                             Column{"time_s", "s", &Line::time},
+                             Column{"displacement_mm", "mm", &Line::displacement},
+                             Column{"force_measured_N", "N", &Line::force},
+                             Column{"pull_force_N", "N", &Line::other_force},
+                             Column{"normal_force_measured_N", "N", &Line::measured_normal_force}};
 /// Written by friction tests, or no matter of the fit.
 constexpr std::array<std::string_view, 7> passed_over{
     "friction_coefficient", "force_error",   "error",   "paper_error",
     "force_paper_model_N",  "paper_force_N", "operator"};
 
-std::vector<std::string_view> known_columns() {
-  std::vector<std::string_view> list;
-  for (const auto& [name, member] : names) list.push_back(name);
-  for (const auto& column : conditions) list.push_back(column.name);
-  for (const auto& column : measurements) list.push_back(column.name);
-  return list;
+constexpr TableRules rules{.what = "a coupon table",
+                           .unknown = "friction.coupons.column.unknown"_rule,
+                           .missing = "friction.coupons.column.missing"_rule,
+                           .twice = "friction.coupons.column.twice"_rule,
+                           .number = "friction.coupons.number"_rule};
+
+std::vector<Line> lines_of(const CsvTable& table, TableProblems& problems) {
+  std::vector<Line> lines = read_rows(table, columns, rules, problems, passed_over);
+  // Our own tables hold the model's force under pull_force_N, beside what was measured.
+  if (!has_column(table, "force_measured_N"))
+    for (Line& line : lines) line.force = line.other_force;
+  if (!has_column(table, "force_measured_N") && !has_column(table, "pull_force_N"))
+    problems.add(rules.missing, "force_measured_N or pull_force_N", "", "must be a column of the table",
+                 fmt::format("Known columns: {}.", names_of(columns)), table.header.line);
+  if (lines.empty())
+    problems.add("friction.coupons.empty"_rule, "data", "", "must hold at least one pull",
+                 "One line a pull, after the header line.", 0);
+  return lines;
 }
-
-/// "normal_force" of "normal_force_N" and of "normal_force_kN".
-std::string_view without_unit(std::string_view column) {
-  for (const std::string_view unit : {"_mm_s", "_m_s", "_mm_min", "_m_min", "_in_s"})
-    if (column.ends_with(unit)) return column.substr(0, column.size() - unit.size());
-  return column.substr(0, column.rfind('_'));
-}
-
-class CouponReader {
- public:
-  CouponReader(const CsvTable& table, std::string file, Problems& problems)
-      : table_(table), file_(std::move(file)), problems_(problems) {}
-
-  std::vector<Line> lines() {
-    problems_.insert(problems_.end(), table_.problems.begin(), table_.problems.end());
-    check_columns();
-    std::vector<Line> lines;
-    for (const CsvRow& row : table_.rows) {
-      lines.emplace_back();
-      lines.back().line = row.line;
-      for (std::size_t i = 0; i < row.cells.size(); ++i)
-        read_cell(lines.back(), header()[i], row.cells[i], row.line);
-    }
-    // Our own tables hold the model's force under pull_force_N, beside what was measured.
-    if (!has("force_measured_N"))
-      for (Line& line : lines) line.force = line.other_force;
-    return lines;
-  }
-
-  bool has(std::string_view column) const { return std::ranges::count(header(), column) > 0; }
-
-  void add(Rule id, std::string_view key, std::string value, std::string rule, std::string way_out,
-           int line) {
-    problems_.push_back({.id = id,
-                         .key = std::string(key),
-                         .value = std::move(value),
-                         .rule = std::move(rule),
-                         .way_out = std::move(way_out),
-                         .file = file_,
-                         .line = line});
-  }
-
- private:
-  const std::vector<std::string>& header() const { return table_.header.cells; }
-
-  void check_columns() {
-    const auto known = known_columns();
-    for (const std::string& name : header()) {
-      if (std::ranges::count(known, name) > 0 || std::ranges::count(passed_over, name) > 0) continue;
-      const auto meant = std::ranges::find_if(
-          known, [&](std::string_view k) { return without_unit(k) == without_unit(name); });
-      add("friction.coupons.column.unknown"_rule, name, "", "is no column of a coupon table",
-          meant != known.end()
-              ? fmt::format("Convert its numbers and call it {}: the unit stands in the name.", *meant)
-              : fmt::format("Known columns: {}.", fmt::join(known, ", ")),
-          table_.header.line);
-    }
-    for (const auto& column : conditions)
-      if (column.required && !has(column.name)) report_missing(column.name);
-    if (!has("force_measured_N") && !has("pull_force_N")) report_missing("force_measured_N or pull_force_N");
-    const std::set<std::string> different(header().begin(), header().end());
-    if (different.size() < header().size())
-      add("friction.coupons.column.twice"_rule, "header", "", "names a column twice",
-          "Leave one of them out.", table_.header.line);
-  }
-
-  void report_missing(std::string_view name) {
-    add("friction.coupons.column.missing"_rule, name, "", "must be a column of the table",
-        fmt::format("Known columns: {}.", fmt::join(known_columns(), ", ")), table_.header.line);
-  }
-
-  void read_cell(Line& into, std::string_view name, const std::string& cell, int line) {
-    for (const auto& [known, member] : names)
-      if (known == name) into.*member = cell;
-    for (const auto& column : conditions)
-      if (column.name == name && (column.required || !cell.empty()))
-        read_number(cell, column.unit, name, line, [&](double value) { into.*column.member = value; });
-    for (const auto& column : measurements)
-      if (column.name == name && !cell.empty())
-        read_number(cell, column.unit, name, line, [&](double value) { into.*column.member = value; });
-  }
-
-  void read_number(const std::string& cell, std::string_view unit, std::string_view name, int line,
-                   const auto& store) {
-    const heddle::Reading reading = read_quantity(fmt::format("{} {}", cell, unit), unit);
-    if (reading.ok()) return store(reading.value);
-    add("friction.coupons.number"_rule, name, cell, fmt::format("must be a number in {}", unit),
-        "Write digits only; the unit stands in the column's name.", line);
-  }
-
-  const CsvTable& table_;
-  std::string file_;
-  Problems& problems_;
-};
 
 /// Lines of one piece of fabric under one condition.
 using Pull = std::vector<const Line*>;
@@ -257,11 +165,11 @@ class Numbering {
   std::map<Key, std::size_t> place_;
 };
 
-void check_line(CouponReader& reader, const Line& line) {
+void check_line(TableProblems& problems, const Line& line) {
   const auto positive = [&](double value, std::string_view column, std::string_view unit) {
     if (value > 0.0 && std::isfinite(value)) return;
-    reader.add("friction.coupons.positive"_rule, column, write_quantity(value, unit), "must be positive",
-               "Correct the line, or leave it out.", line.line);
+    problems.add("friction.coupons.positive"_rule, column, write_quantity(value, unit), "must be positive",
+                 "Correct the line, or leave it out.", line.line);
   };
   positive(line.velocity, "velocity_mm_s", "mm/s");
   positive(line.normal_force, "normal_force_N", "N");
@@ -271,34 +179,34 @@ void check_line(CouponReader& reader, const Line& line) {
   for (const auto& [value, column] : {std::pair{line.tool_temperature, "tool_temperature_C"},
                                       std::pair{line.fabric_temperature, "fabric_temperature_C"}})
     if (value > too_hot)
-      reader.add("friction.coupons.unit.temperature"_rule, column, write_quantity(value, "degC"),
-                 "lies above 320 degC, where polypropylene is no more; is it in kelvin or fahrenheit?",
-                 "Write it in degC.", line.line);
+      problems.add("friction.coupons.unit.temperature"_rule, column, write_quantity(value, "degC"),
+                   "lies above 320 degC, where polypropylene is no more; is it in kelvin or fahrenheit?",
+                   "Write it in degC.", line.line);
 }
 
-void check_force(CouponReader& reader, const CouponRow& row, int faces) {
+void check_force(TableProblems& problems, const CouponRow& row, int faces) {
   const double force = *row.pull.measured_force;
   if (!(force > 0.0 && std::isfinite(force)))
-    return reader.add("friction.coupons.force"_rule, "force_measured_N",
-                      std::isnan(force) ? "" : write_quantity(force, "N"), "must be a positive force",
-                      "Fill in the measured pull force, or leave the line out.", row.line);
+    return problems.add("friction.coupons.force"_rule, "force_measured_N",
+                        std::isnan(force) ? "" : write_quantity(force, "N"), "must be a positive force",
+                        "Fill in the measured pull force, or leave the line out.", row.line);
   if (!(row.pull.normal_force > 0.0)) return;  // said already
   const double mu = measured_coefficient(row, faces);
   if (mu > 5.0 || mu < 5e-3)
-    reader.add("friction.coupons.unit.force"_rule, "force_measured_N", write_quantity(force, "N"),
-               fmt::format("gives mu = F/({} N) = {:.3g}, which no fabric has; is one of the two forces in "
-                           "kN or in kg?",
-                           faces, mu),
-               "Write pull force and normal force both in N.", row.line);
+    problems.add("friction.coupons.unit.force"_rule, "force_measured_N", write_quantity(force, "N"),
+                 fmt::format("gives mu = F/({} N) = {:.3g}, which no fabric has; is one of the two forces in "
+                             "kN or in kg?",
+                             faces, mu),
+                 "Write pull force and normal force both in N.", row.line);
 }
 
 /// A piece of fabric with several lines needs the slip of each, some of it.
-bool check_history(CouponReader& reader, const Pull& pull) {
+bool check_history(TableProblems& problems, const Pull& pull) {
   if (pull.size() == 1) return true;
   const bool whole = std::ranges::all_of(pull, [](const Line* l) { return l->displacement.has_value(); });
   if (whole && std::ranges::any_of(pull, [](const Line* l) { return *l->displacement > 0.0; })) return true;
   const Line& first = *pull.front();
-  reader.add(
+  problems.add(
       "friction.coupons.history"_rule, "displacement_mm", "",
       fmt::format("must be given, and rise above 0, where a sample has several lines ({} of sample {})",
                   pull.size(), first.sample),
@@ -353,15 +261,10 @@ double measured_coefficient(const CouponRow& row, int faces) {
 }
 
 CouponData parse_coupons(std::string_view text, const std::string& file, const CouponReduction& reduction) {
-  const CsvTable table = parse_csv(text, file);
-  Problems problems;
-  CouponReader reader(table, file, problems);
-  const std::vector<Line> lines = reader.lines();
-  if (lines.empty())
-    reader.add("friction.coupons.empty"_rule, "data", "", "must hold at least one pull",
-               "One line a pull, after the header line.", 0);
-  if (!problems.empty()) throw InputError(std::move(problems));
-  for (const Line& line : lines) check_line(reader, line);
+  TableProblems problems{file};
+  const std::vector<Line> lines = lines_of(parse_csv(text, file), problems);
+  problems.throw_if_any();
+  for (const Line& line : lines) check_line(problems, line);
 
   CouponData data;
   data.file = file;
@@ -371,7 +274,7 @@ CouponData parse_coupons(std::string_view text, const std::string& file, const C
   const std::vector<Pull> pulls = pulls_of(lines);
   const SlipRange all_slips = slips_of(pulls);
   for (const Pull& pull : pulls) {
-    if (!check_history(reader, pull)) continue;
+    if (!check_history(problems, pull)) continue;
     if (pull.size() > 1) ++histories;
     const Line& first = *pull.front();
     if (days.of(first.day) == data.days.size()) data.days.push_back(first.day);
@@ -384,12 +287,12 @@ CouponData parse_coupons(std::string_view text, const std::string& file, const C
       row.condition = conditions_seen.of(condition_of(first));
       row.day = days.of(first.day);
       row.sample = data.samples.size();
-      check_force(reader, row, reduction.faces);
+      check_force(problems, row, reduction.faces);
       data.rows.push_back(std::move(row));
     }
     data.samples.push_back(first.sample.empty() ? data.rows.back().pull.name : first.sample);
   }
-  if (!problems.empty()) throw InputError(std::move(problems));
+  problems.throw_if_any();
   data.conditions = conditions_seen.count();
   data.notes = odd_looks(data.rows);
   if (histories > 0) data.notes.push_back(reduction_in_words(histories, reduction.stretches));

@@ -134,7 +134,7 @@ struct About<ShearHeating> {
       Field<ShearHeating>{"conductivity", "W/(m K)", &ShearHeating::conductivity, positive_range,
                           "Of the melt."},
       Field<ShearHeating>{"settling", "s", &ShearHeating::settling, not_negative,
-                          "Time of sliding over which the walls warm; 0 s settles at once."}};
+                          "Time of sliding over which the heat of the layer gathers; 0 s: at once."}};
 };
 template <>
 struct About<ViscosityPlateau> {

@@ -8,10 +8,9 @@
 #include <limits>
 #include <map>
 #include <optional>
-#include <set>
 #include <tuple>
 
-#include "core/csv.h"
+#include "core/measured_table.h"
 #include "core/units.h"
 #include "pipeline/discover/random.h"
 
@@ -28,158 +27,79 @@ struct Line {
   double draw_in = 0.0, shear_angle = 0.0;  ///< read, not used yet
 };
 
-struct Column {
-  std::string_view name, unit;
-  double Line::*member;
-  bool required;
-};
-constexpr std::array numbers{Column{"speed_scale", "", &Line::speed_scale, true},
+using Column = TableColumn<Line>;
+constexpr std::array columns{Column{"condition_id", "", &Line::condition, true},
+                             Column{"sample_id", "", &Line::sample, true},
+                             Column{"day_id", "", &Line::day},
+                             Column{"speed_scale", "", &Line::speed_scale, true},
                              Column{"binder_force_N", "N", &Line::binder_force, true},
                              Column{"tool_temperature_C", "degC", &Line::tool_temperature, true},
                              Column{"blank_temperature_C", "degC", &Line::blank_temperature, true},
-                             Column{"orientation_deg", "deg", &Line::orientation, false},
+                             Column{"orientation_deg", "deg", &Line::orientation},
                              Column{"punch_displacement_mm", "mm", &Line::displacement, true},
                              Column{"punch_force_N", "N", &Line::force, true},
-                             Column{"draw_in_max_mm", "mm", &Line::draw_in, false},
-                             Column{"shear_angle_max_deg", "deg", &Line::shear_angle, false}};
-struct NameColumn {
-  std::string_view name;
-  std::string Line::*member;
-  bool required;
-};
-constexpr std::array names{NameColumn{"condition_id", &Line::condition, true},
-                           NameColumn{"sample_id", &Line::sample, true},
-                           NameColumn{"day_id", &Line::day, false}};
-
-std::vector<std::string_view> known_columns() {
-  std::vector<std::string_view> list;
-  for (const NameColumn& column : names) list.push_back(column.name);
-  for (const Column& column : numbers) list.push_back(column.name);
-  return list;
-}
+                             Column{"draw_in_max_mm", "mm", &Line::draw_in},
+                             Column{"shear_angle_max_deg", "deg", &Line::shear_angle}};
+constexpr TableRules rules{.what = "a table of stampings",
+                           .unknown = "discover.stampings.column.unknown"_rule,
+                           .missing = "discover.stampings.column.missing"_rule,
+                           .twice = "discover.stampings.column.twice"_rule,
+                           .number = "discover.stampings.number"_rule};
 
 /// Lines of one blank.
 using Curve = std::vector<const Line*>;
 
-class StampingReader {
- public:
-  StampingReader(std::string file, Problems& problems) : file_(std::move(file)), problems_(problems) {}
+void check_line(const Line& line, TableProblems& problems) {
+  const auto positive = [&](double value, std::string_view column, const char* unit) {
+    if (!(value > 0.0))
+      problems.add("discover.stampings.positive"_rule, column, write_quantity(value, unit),
+                   "must be positive", "Correct the line, or leave it out.", line.line);
+  };
+  positive(line.speed_scale, "speed_scale", "");
+  positive(line.binder_force, "binder_force_N", "N");
+  constexpr double too_hot = 593.15;  // polypropylene is no more; 453 degC is 180 degC in kelvin
+  for (const auto& [value, column] : {std::pair{line.tool_temperature, "tool_temperature_C"},
+                                      std::pair{line.blank_temperature, "blank_temperature_C"}})
+    if (value > too_hot)
+      problems.add("discover.stampings.unit.temperature"_rule, column, write_quantity(value, "degC"),
+                   "lies above 320 degC, where polypropylene is no more; is it in kelvin or fahrenheit?",
+                   "Write it in degC.", line.line);
+}
 
-  std::vector<Line> lines(const CsvTable& table) {
-    problems_.insert(problems_.end(), table.problems.begin(), table.problems.end());
-    check_columns(table);
-    std::vector<Line> lines;
-    for (const CsvRow& row : table.rows) {
-      lines.emplace_back();
-      lines.back().line = row.line;
-      for (std::size_t i = 0; i < row.cells.size(); ++i)
-        read_cell(lines.back(), table.header.cells[i], row.cells[i]);
+/// Said once of the table, where its largest values look like another unit.
+void check_units(const std::vector<Line>& lines, TableProblems& problems) {
+  double stroke = 0.0, force = 0.0;
+  for (const Line& line : lines) {
+    stroke = std::max(stroke, line.displacement);
+    force = std::max(force, line.force);
+  }
+  if (stroke < 1e-3)
+    problems.add("discover.stampings.unit.stroke"_rule, "punch_displacement_mm", write_quantity(stroke, "mm"),
+                 "is the deepest stroke of the table, which forms nothing; is it in metres?",
+                 "Write it in mm.", 0);
+  if (force < 5.0)
+    problems.add("discover.stampings.unit.force"_rule, "punch_force_N", write_quantity(force, "N"),
+                 "is the largest force of the table, less than a blank's own weight asks for; is it in kN?",
+                 "Write it in N.", 0);
+}
+
+/// Strictly deeper line by line; long enough to be binned.
+void check_curve(const Curve& curve, TableProblems& problems) {
+  for (std::size_t k = 1; k < curve.size(); ++k)
+    if (!(curve[k]->displacement > curve[k - 1]->displacement)) {
+      problems.add("discover.stampings.curve"_rule, "punch_displacement_mm",
+                   write_quantity(curve[k]->displacement, "mm"),
+                   fmt::format("must be deeper than the line before it of sample {}", curve[k]->sample),
+                   "One line a depth, in the order of the stroke; each blank its own sample_id.",
+                   curve[k]->line);
+      return;
     }
-    if (lines.empty())
-      add("discover.stampings.empty"_rule, "data", "", "must hold at least one curve",
-          "One line a point of a curve, after the header line.", 0);
-    return lines;
-  }
-
-  void check_line(const Line& line) {
-    const auto positive = [&](double value, std::string_view column, const char* unit) {
-      if (!(value > 0.0))
-        add("discover.stampings.positive"_rule, column, write_quantity(value, unit), "must be positive",
-            "Correct the line, or leave it out.", line.line);
-    };
-    positive(line.speed_scale, "speed_scale", "");
-    positive(line.binder_force, "binder_force_N", "N");
-    constexpr double too_hot = 593.15;  // polypropylene is no more; 453 degC is 180 degC in kelvin
-    for (const auto& [value, column] : {std::pair{line.tool_temperature, "tool_temperature_C"},
-                                        std::pair{line.blank_temperature, "blank_temperature_C"}})
-      if (value > too_hot)
-        add("discover.stampings.unit.temperature"_rule, column, write_quantity(value, "degC"),
-            "lies above 320 degC, where polypropylene is no more; is it in kelvin or fahrenheit?",
-            "Write it in degC.", line.line);
-  }
-
-  /// Said once of the table, where its largest values look like another unit.
-  void check_units(const std::vector<Line>& lines) {
-    double stroke = 0.0, force = 0.0;
-    for (const Line& line : lines) {
-      stroke = std::max(stroke, line.displacement);
-      force = std::max(force, line.force);
-    }
-    if (stroke < 1e-3)
-      add("discover.stampings.unit.stroke"_rule, "punch_displacement_mm", write_quantity(stroke, "mm"),
-          "is the deepest stroke of the table, which forms nothing; is it in metres?", "Write it in mm.", 0);
-    if (force < 5.0)
-      add("discover.stampings.unit.force"_rule, "punch_force_N", write_quantity(force, "N"),
-          "is the largest force of the table, less than a blank's own weight asks for; is it in kN?",
-          "Write it in N.", 0);
-  }
-
-  /// Strictly deeper line by line; long enough to be binned.
-  bool check_curve(const Curve& curve) {
-    for (std::size_t k = 1; k < curve.size(); ++k)
-      if (!(curve[k]->displacement > curve[k - 1]->displacement)) {
-        add("discover.stampings.curve"_rule, "punch_displacement_mm",
-            write_quantity(curve[k]->displacement, "mm"),
-            fmt::format("must be deeper than the line before it of sample {}", curve[k]->sample),
-            "One line a depth, in the order of the stroke; each blank its own sample_id.", curve[k]->line);
-        return false;
-      }
-    if (curve.size() >= 4) return true;
-    add("discover.stampings.short"_rule, "sample_id", curve.front()->sample,
-        fmt::format("has {} {} only, which is no curve", curve.size(), curve.size() == 1 ? "line" : "lines"),
-        "Give at least four points of each blank.", curve.front()->line);
-    return false;
-  }
-
-  void add(RuleId id, std::string_view key, std::string value, std::string rule, std::string way_out,
-           int line) {
-    problems_.push_back({.id = std::move(id),
-                         .key = std::string(key),
-                         .value = std::move(value),
-                         .rule = std::move(rule),
-                         .way_out = std::move(way_out),
-                         .file = file_,
-                         .line = line});
-  }
-
- private:
-  void check_columns(const CsvTable& table) {
-    const std::vector<std::string>& header = table.header.cells;
-    const auto known = known_columns();
-    for (const std::string& name : header)
-      if (std::ranges::count(known, name) == 0)
-        add("discover.stampings.column.unknown"_rule, name, "", "is no column of a table of stampings",
-            fmt::format("Known columns: {}.", fmt::join(known, ", ")), table.header.line);
-    const auto demand = [&](std::string_view name, bool required) {
-      if (required && std::ranges::count(header, name) == 0)
-        add("discover.stampings.column.missing"_rule, name, "", "must be a column of the table",
-            fmt::format("Known columns: {}.", fmt::join(known, ", ")), table.header.line);
-    };
-    for (const NameColumn& column : names) demand(column.name, column.required);
-    for (const Column& column : numbers) demand(column.name, column.required);
-    if (std::set<std::string>(header.begin(), header.end()).size() < header.size())
-      add("discover.stampings.column.twice"_rule, "header", "", "names a column twice",
-          "Leave one of them out.", table.header.line);
-  }
-
-  void read_cell(Line& into, std::string_view name, const std::string& cell) {
-    for (const NameColumn& column : names)
-      if (column.name == name) into.*column.member = cell;
-    for (const Column& column : numbers) {
-      if (column.name != name || (cell.empty() && !column.required)) continue;
-      const heddle::Reading reading = read_quantity(fmt::format("{} {}", cell, column.unit), column.unit);
-      if (reading.ok() && std::isfinite(reading.value))
-        into.*column.member = reading.value;
-      else
-        add("discover.stampings.number"_rule, name, cell,
-            column.unit.empty() ? "must be a number" : fmt::format("must be a number in {}", column.unit),
-            "Write digits only; the unit stands in the column's name.", into.line);
-    }
-  }
-
-  std::string file_;
-  Problems& problems_;
-};
+  if (curve.size() >= 4) return;
+  problems.add(
+      "discover.stampings.short"_rule, "sample_id", curve.front()->sample,
+      fmt::format("has {} {} only, which is no curve", curve.size(), curve.size() == 1 ? "line" : "lines"),
+      "Give at least four points of each blank.", curve.front()->line);
+}
 
 std::vector<Curve> curves_of(const std::vector<Line>& lines) {
   std::vector<Curve> curves;
@@ -202,16 +122,16 @@ StampingCondition condition_of(const Line& line) {
 }
 
 /// The number of a curve's condition, by its name; its settings must be those of the name.
-std::size_t number_of(const Curve& curve, StampingReader& reader,
+std::size_t number_of(const Curve& curve, TableProblems& problems,
                       std::vector<StampingCondition>& conditions) {
   const std::string& name = curve.front()->condition;
   auto known = std::ranges::find(conditions, name, &StampingCondition::name);
   if (known == conditions.end()) known = conditions.insert(conditions.end(), condition_of(*curve.front()));
   for (const Line* line : curve)
     if (!(condition_of(*line) == *known)) {
-      reader.add("discover.stampings.condition"_rule, "condition_id", name,
-                 "is set differently here than in the lines before",
-                 "Give lines with other settings a condition_id of their own.", line->line);
+      problems.add("discover.stampings.condition"_rule, "condition_id", name,
+                   "is set differently here than in the lines before",
+                   "Give lines with other settings a condition_id of their own.", line->line);
       break;
     }
   return static_cast<std::size_t>(known - conditions.begin());
@@ -231,7 +151,7 @@ std::vector<double> edges_of(const std::vector<Curve>& curves, const StampingRed
 
 /// A row a bin.
 void add_rows(StampingData& data, const Curve& curve, std::size_t condition, std::size_t day,
-              const StampingReduction& reduction, StampingReader& reader) {
+              const StampingReduction& reduction, TableProblems& problems) {
   std::vector<double> stroke, force;
   for (const Line* line : curve) {
     stroke.push_back(line->displacement);
@@ -241,10 +161,11 @@ void add_rows(StampingData& data, const Curve& curve, std::size_t condition, std
   const StampingCondition& set = data.conditions[condition];
   for (std::size_t k = 0; k < means.size(); ++k) {
     if (!(means[k] > 0.0)) {
-      reader.add("discover.stampings.force"_rule, "punch_force_N", write_quantity(means[k], "N"),
-                 fmt::format("must be positive on the mean between {:.1f} and {:.1f} mm of sample {}",
-                             1e3 * data.edges[k], 1e3 * data.edges[k + 1], curve.front()->sample),
-                 "Correct the sign or the offset of the force, or leave the blank out.", curve.front()->line);
+      problems.add("discover.stampings.force"_rule, "punch_force_N", write_quantity(means[k], "N"),
+                   fmt::format("must be positive on the mean between {:.1f} and {:.1f} mm of sample {}",
+                               1e3 * data.edges[k], 1e3 * data.edges[k + 1], curve.front()->sample),
+                   "Correct the sign or the offset of the force, or leave the blank out.",
+                   curve.front()->line);
       return;
     }
     friction::CouponRow row;
@@ -269,8 +190,7 @@ void add_rows(StampingData& data, const Curve& curve, std::size_t condition, std
 }  // namespace
 
 bool is_stamping_table(std::string_view text) {
-  const CsvTable table = parse_csv(text, "");
-  return std::ranges::count(table.header.cells, "punch_force_N") > 0;
+  return has_column(parse_csv(text, ""), "punch_force_N");
 }
 
 std::vector<double> bin_means(const std::vector<double>& stroke, const std::vector<double>& force,
@@ -297,40 +217,41 @@ std::vector<double> bin_means(const std::vector<double>& stroke, const std::vect
 
 StampingData parse_stampings(std::string_view text, const std::string& file,
                              const StampingReduction& reduction) {
-  const CsvTable table = parse_csv(text, file);
-  Problems problems;
-  StampingReader reader(file, problems);
-  const std::vector<Line> lines = reader.lines(table);
-  if (!problems.empty()) throw InputError(std::move(problems));
-  for (const Line& line : lines) reader.check_line(line);
-  reader.check_units(lines);
+  TableProblems problems{file};
+  const std::vector<Line> lines = read_rows(parse_csv(text, file), columns, rules, problems);
+  if (lines.empty())
+    problems.add("discover.stampings.empty"_rule, "data", "", "must hold at least one curve",
+                 "One line a point of a curve, after the header line.", 0);
+  problems.throw_if_any();
+  for (const Line& line : lines) check_line(line, problems);
+  check_units(lines, problems);
   const std::vector<Curve> curves = curves_of(lines);
   StampingData data;
   data.curves.file = file;
   std::vector<std::size_t> condition;
   for (const Curve& curve : curves) {
-    reader.check_curve(curve);
-    condition.push_back(number_of(curve, reader, data.conditions));
+    check_curve(curve, problems);
+    condition.push_back(number_of(curve, problems, data.conditions));
   }
   if (data.conditions.size() < 2)
-    reader.add("discover.stampings.alike"_rule, "condition_id", "",
-               "names one condition only, which cannot tell one effect from another",
-               "Stamp at two speeds or more.", 0);
-  if (!problems.empty()) throw InputError(std::move(problems));
+    problems.add("discover.stampings.alike"_rule, "condition_id", "",
+                 "names one condition only, which cannot tell one effect from another",
+                 "Stamp at two speeds or more.", 0);
+  problems.throw_if_any();
   data.edges = edges_of(curves, reduction);
   if (!(data.edges.back() > data.edges.front()))
-    reader.add("discover.stampings.overlap"_rule, "punch_displacement_mm", "",
-               "has no stroke that all curves and the case share",
-               "Leave out curves that begin late or end early, or give the case a deeper stroke.", 0);
+    problems.add("discover.stampings.overlap"_rule, "punch_displacement_mm", "",
+                 "has no stroke that all curves and the case share",
+                 "Leave out curves that begin late or end early, or give the case a deeper stroke.", 0);
   else
     for (std::size_t k = 0; k < curves.size(); ++k) {
       const std::string& day_name = curves[k].front()->day;
       const auto known = std::ranges::find(data.curves.days, day_name);
       const auto day = static_cast<std::size_t>(known - data.curves.days.begin());
       if (known == data.curves.days.end()) data.curves.days.push_back(day_name);
-      add_rows(data, curves[k], condition[k], day, reduction, reader);
+      add_rows(data, curves[k], condition[k], day, reduction, problems);
     }
-  if (!problems.empty()) throw InputError(std::move(problems));
+  problems.throw_if_any();
   data.curves.conditions = data.conditions.size();
   data.curves.notes.push_back(
       fmt::format("{} curves were cut to their mean forces over {} bins of stroke from {:.1f} to {:.1f} mm.",

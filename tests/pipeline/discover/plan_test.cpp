@@ -90,7 +90,7 @@ TEST_CASE("a design is refused with every problem and its line", "[discover][pla
   CHECK(rules_broken_by(head + "\nfast,1500,85,180\n16.6,-1500,85,180\n16.6,1500,-300,180\n") ==
         Rules{"discover.design.number", "discover.design.range", "discover.design.range"});
   CHECK(rules_broken_by(head + ",replicates,dwell_s\n16.6,1500,85,180,2.5,-1\n8,1500,85,180,5,nan\n") ==
-        Rules{"discover.design.replicates", "discover.design.range", "discover.design.number"});
+        Rules{"discover.design.number", "discover.design.range", "discover.design.replicates"});
   CHECK(rules_broken_by(head + "\n16.6,1500,85,180\n16.6,1500,85,180\n") == Rules{"discover.design.alike"});
   CHECK(rules_broken_by("parameter,unit,baseline,additional\nvelocity,m/s,1,2\n") ==
         Rules{"friction.design.unit"});
