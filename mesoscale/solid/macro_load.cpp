@@ -69,8 +69,8 @@ HEDDLE_INLINE void scatter(const ModalForce& force, double height, const std::ar
       add_product(sum, a, x);
       add_product(sum, b, y);
       add_product(sum, c, z);
-      add_product(sum, n & 4 ? -a : a, xz);
-      add_product(sum, n & 4 ? -b : b, yz);
+      add_product(sum, n & 4 ? a : -a, xz);
+      add_product(sum, n & 4 ? b : -b, yz);
       store(at, sum);
     }
   }
