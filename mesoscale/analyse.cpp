@@ -5,6 +5,7 @@
 #include "mesoscale/cell_spec.h"
 #include "mesoscale/contact.h"
 #include "mesoscale/forming.h"
+#include "mesoscale/state.h"
 
 namespace heddle::mesoscale {
 
@@ -42,6 +43,11 @@ CellSummary summarise(const FormingModels& models, const MassBalance& mass, cons
   summary.contact_area_fraction = plate_contact(fabric, law, 0.0).touched_fraction(0.05e-3);
   summary.tow_section_area = area(crossing.tow[0].section);
   summary.consolidated_thickness = mass.consolidated_thickness();
+  summary.thickness = fabric.thickness;
+  const SheetShares shares = sheet_shares(fabric);
+  summary.tow_share = shares.tows;
+  summary.glass_share = shares.glass;
+  summary.void_share = shares.voids;
   return summary;
 }
 

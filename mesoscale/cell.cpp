@@ -3,18 +3,61 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <stdexcept>
 
 namespace heddle::mesoscale {
 
 namespace {
 
 CrossingGeometry crossing_of(const std::array<double, 2>& spacing, const std::array<Section, 2>& section,
-                             const std::array<double, 2>& fibre_fraction) {
+                             const std::array<double, 2>& fibre_fraction, double asked_excess = 0.0) {
+  const double excess = excess_with_room(section, spacing, asked_excess);
   CrossingGeometry crossing;
   for (std::size_t i = 0; i < 2; ++i)
-    crossing.tow[i] = {spacing[i], section[i], path_over(section[i], section[1 - i], spacing[1 - i]),
+    crossing.tow[i] = {spacing[i], section[i],
+                       path_over(section[i], section[1 - i], spacing[1 - i], i == 0 ? excess : -excess),
                        fibre_fraction[i]};
   return crossing;
+}
+
+// By how much a crossing's warps rise further than where faces are flush: just nothing where they are.
+double excess_of(const CrossingGeometry& crossing) {
+  return crossing.tow[0].path.height - thickness(crossing.tow[1].section);
+}
+
+// How much further than by the thickness of the tows under it a path may rise.
+double room_over(const Section& under, double pitch) {
+  const double twice = 2.0 * enclosing_radius(under);
+  if (twice <= pitch) return std::numeric_limits<double>::infinity();
+  const double highest = pitch * pitch / (twice + std::sqrt((twice - pitch) * (twice + pitch)));
+  return std::max(highest - thickness(under), 0.0);
+}
+
+// What is the same in every state.
+FabricGeometry without_sections(const WeaveSpec& weave) {
+  if (Problems problems = check_pattern(weave.pattern); !problems.empty())
+    throw InputError(std::move(problems));
+  FabricGeometry fabric;
+  fabric.weave = parse_weave(weave.pattern).weave;
+  fabric.quarters = quarter_shares(fabric.weave);
+  fabric.interlacing = interlacing(fabric.weave);
+  fabric.as_woven_crimp = as_woven_crimp(weave, fabric.interlacing);
+  fabric.mass = mass_balance(weave, fabric.as_woven_crimp);
+  return fabric;
+}
+
+// The crossing of tows of these sections, with what was woven in inside them.
+void put_sections(FabricGeometry& fabric, const WeaveSpec& weave, const std::array<Section, 2>& section,
+                  double excess) {
+  std::array<double, 2> spacing{}, fibre_fraction{};
+  for (std::size_t i = 0; i < 2; ++i) {
+    spacing[i] = weave.tow(i).pitch();
+    const double crimp = fabric.as_woven_crimp[i], section_area = area(section[i]);
+    const double solid_area = fabric.mass.glass_area[i] + fabric.mass.resin_area[i];
+    fabric.tow_solid_fraction[i] = section_share(solid_area, crimp, section_area);
+    fibre_fraction[i] = section_share(fabric.mass.glass_area[i], crimp, section_area);
+  }
+  fabric.crossing = crossing_of(spacing, section, fibre_fraction, excess);
 }
 
 struct Along {
@@ -38,33 +81,36 @@ double centre_between(const Path& path, bool first_above, bool second_above, dou
 }  // namespace
 
 FabricGeometry fabric_geometry(const WeaveSpec& weave, CellState state) {
-  if (Problems problems = check_pattern(weave.pattern); !problems.empty())
-    throw InputError(std::move(problems));
-  FabricGeometry fabric;
-  fabric.weave = parse_weave(weave.pattern).weave;
-  fabric.quarters = quarter_shares(fabric.weave);
-  fabric.interlacing = interlacing(fabric.weave);
-  fabric.as_woven_crimp = as_woven_crimp(weave, fabric.interlacing);
-  fabric.mass = mass_balance(weave, fabric.as_woven_crimp);
+  if (state == CellState::compacted)
+    throw std::invalid_argument("fabric_geometry: the compacted state has a thickness of its own");
+  FabricGeometry fabric = without_sections(weave);
+  std::array<Section, 2> section{section_of(weave, 0), section_of(weave, 1)};
+  fabric.thickness = weave.fabric_thickness;
+  if (state == CellState::consolidated) {
+    fabric.thickness = fabric.mass.consolidated_thickness();
+    for (std::size_t i = 0; i < 2; ++i) {
+      // A consolidated direction is as thick as what it holds.
+      const double share = fabric.mass.solid_thickness[i] / fabric.thickness;
+      section[i] = resized(section[i], weave.tow(i).width, share * fabric.thickness);
+    }
+  }
+  // Between the plates of a press faces are flush.
+  put_sections(fabric, weave, section, state == CellState::as_woven ? weave.crimp_excess() : 0.0);
+  return fabric;
+}
 
-  const bool woven = state == CellState::as_woven;
-  fabric.thickness = woven ? weave.fabric_thickness : fabric.mass.consolidated_thickness();
-  std::array<double, 2> spacing{}, fibre_fraction{};
+FabricGeometry compacted_geometry(const WeaveSpec& weave, double thickness) {
+  FabricGeometry fabric = without_sections(weave);
+  const double least = fabric.mass.consolidated_thickness();
+  const double way = (weave.fabric_thickness - thickness) / (weave.fabric_thickness - least);
   std::array<Section, 2> section{section_of(weave, 0), section_of(weave, 1)};
   for (std::size_t i = 0; i < 2; ++i) {
     const TowSpec tow = weave.tow(i);
-    spacing[i] = tow.pitch();
-    // A consolidated direction is as thick as what it holds.
-    if (!woven) {
-      const double share = fabric.mass.solid_thickness[i] / fabric.thickness;
-      section[i] = resized(section[i], tow.width, share * fabric.thickness);
-    }
-    const double crimp = fabric.as_woven_crimp[i], section_area = area(section[i]);
-    const double solid_area = fabric.mass.glass_area[i] + fabric.mass.resin_area[i];
-    fabric.tow_solid_fraction[i] = section_share(solid_area, crimp, section_area);
-    fibre_fraction[i] = section_share(fabric.mass.glass_area[i], crimp, section_area);
+    const double pressed = (1.0 - way) * tow.thickness + way * fabric.mass.solid_thickness[i];
+    section[i] = resized(section[i], tow.width, pressed);
   }
-  fabric.crossing = crossing_of(spacing, section, fibre_fraction);
+  fabric.thickness = thickness;
+  put_sections(fabric, weave, section, (1.0 - way) * weave.crimp_excess());
   return fabric;
 }
 
@@ -83,8 +129,21 @@ Section section_of(const WeaveSpec& weave, std::size_t direction) {
   return LensSection{tow.width, tow.thickness};
 }
 
-ArcPath path_over(const Section& own, const Section& under, double pitch) {
-  return arc_path(pitch, thickness(under), enclosing_radius(under) + 0.5 * thickness(own));
+ArcPath path_over(const Section& own, const Section& under, double pitch, double excess) {
+  return arc_path(pitch, thickness(under) + excess, enclosing_radius(under) + 0.5 * thickness(own));
+}
+
+double excess_with_room(const std::array<Section, 2>& section, const std::array<double, 2>& spacing,
+                        double excess) {
+  if (excess == 0.0) return 0.0;
+  const std::size_t rises = excess > 0.0 ? 0 : 1;
+  const double room = std::min(room_over(section[1 - rises], spacing[1 - rises]), thickness(section[rises]));
+  return std::copysign(std::min(std::abs(excess), room), excess);
+}
+
+double excess_with_room(const WeaveSpec& weave, double excess) {
+  return excess_with_room({section_of(weave, 0), section_of(weave, 1)},
+                          {weave.tow(0).pitch(), weave.tow(1).pitch()}, excess);
 }
 
 double gap_closure_angle(const TowGeometry& unsheared) {
@@ -119,7 +178,7 @@ CrossingGeometry sheared(const CrossingGeometry& unsheared, double shear_angle) 
     section[i] = resized(tow.section, open, thickness(tow.section));
     fibre_fraction[i] = tow.fibre_fraction * free_width / open;
   }
-  CrossingGeometry crossing = crossing_of(spacing, section, fibre_fraction);
+  CrossingGeometry crossing = crossing_of(spacing, section, fibre_fraction, excess_of(unsheared));
   crossing.shear_angle = shear_angle;
   return crossing;
 }
@@ -148,6 +207,20 @@ PressedFabric pressed(const FabricGeometry& consolidated, double shear_angle) {
   }
   PressedFabric result{crossing_of(spacing, section, fibre_fraction), consolidated.thickness * swelling};
   result.crossing.shear_angle = shear_angle;
+  return result;
+}
+
+CrossingGeometry thickened(const CrossingGeometry& crossing, double factor) {
+  std::array<double, 2> spacing{}, fibre_fraction{};
+  std::array<Section, 2> section{};
+  for (std::size_t i = 0; i < 2; ++i) {
+    const TowGeometry& tow = crossing.tow[i];
+    spacing[i] = tow.spacing;
+    section[i] = resized(tow.section, width(tow.section), factor * thickness(tow.section));
+    fibre_fraction[i] = tow.fibre_fraction * area(tow.section) / area(section[i]);
+  }
+  CrossingGeometry result = crossing_of(spacing, section, fibre_fraction);
+  result.shear_angle = crossing.shear_angle;
   return result;
 }
 

@@ -28,7 +28,8 @@ struct TowGeometry {
 ///
 /// Crimp heights: each family rises by the thickness of the other, h1 = t2 and h2 = t1. So the crowns of both
 /// lie at (t1 + t2) / 2, the faces of the fabric are flush, and no path is too steep for the section it goes
-/// round as long as tows are no wider than their pitch.
+/// round as long as tows are no wider than their pitch. Where the weave says otherwise the warps rise by an
+/// excess more and the wefts by as much less, as far as the sections leave room; closing gaps take it away.
 struct CrossingGeometry {
   double shear_angle = 0.0;          ///< g [rad]
   std::array<TowGeometry, 2> tow{};  ///< {warp, weft}
@@ -49,15 +50,31 @@ struct FabricGeometry {
   CrossingGeometry crossing;                   ///< at g = 0
 };
 
+/// @param state  as woven or consolidated; compacted asks for a thickness
 /// @throws InputError  if weave.pattern is no weave
 FabricGeometry fabric_geometry(const WeaveSpec& weave, CellState state);
+
+/// The fabric pressed to thickness H between flat plates. Each direction gives up the same share of what it
+/// can, c = (H0 - H) / (H0 - H_c), down to the consolidated thickness H_c: t = (1 - c) t0 + c t_c. Sections
+/// keep width and shape, tows their length a pitch and so their glass: V0 rises as the sections shrink.
+/// @param thickness  H [m], from the consolidated to the as-woven one
+/// @throws InputError  if weave.pattern is no weave
+FabricGeometry compacted_geometry(const WeaveSpec& weave, double thickness);
 
 /// As-woven section of one direction. @param direction  0 = warp, 1 = weft
 Section section_of(const WeaveSpec& weave, std::size_t direction);
 
 /// The path of a tow of section `own` over tows of section `under`, `pitch` apart: it rises by their
-/// thickness, round the circle that encloses them and half its own thickness further out.
-ArcPath path_over(const Section& own, const Section& under, double pitch);
+/// thickness and an excess, round the circle that encloses them and half its own thickness further out.
+ArcPath path_over(const Section& own, const Section& under, double pitch, double excess = 0.0);
+
+/// The part of an excess of the warps' crimp height for which there is room [m]: a path that rises by h jams
+/// at R_jam = (p^2 + h^2) / (4 h), which must not be less than the radius of the section under it.
+/// @param spacing  of {warp, weft} [m]
+double excess_with_room(const std::array<Section, 2>& section, const std::array<double, 2>& spacing,
+                        double excess);
+/// Of the as-woven tows.
+double excess_with_room(const WeaveSpec& weave, double excess);
 
 /// Trellis angle at which the first neighbouring tows touch, acos(w / p) [rad].
 double gap_closure_angle(const TowGeometry& unsheared);
@@ -112,6 +129,9 @@ struct PressedFabric {
 };
 /// @param consolidated  at g = 0
 PressedFabric pressed(const FabricGeometry& consolidated, double shear_angle);
+
+/// The same tows `factor` times as thick: as wide as before, with the same glass in larger sections.
+CrossingGeometry thickened(const CrossingGeometry& crossing, double factor);
 
 /// Height of a tow's centreline above the mid-plane at distance `along` from the tow's first crossing [m].
 double warp_centre(const UnitCell& cell, int warp, double along);

@@ -8,6 +8,7 @@
 #include "mesoscale/cell.h"
 #include "mesoscale/closure.h"
 #include "mesoscale/compaction.h"
+#include "mesoscale/state.h"
 
 namespace heddle::mesoscale {
 
@@ -65,6 +66,9 @@ void check_weave_ranges(Problems& problems, const WeaveSpec& w) {
        "must lie between 100 and 30000 kg/m^3", "Polypropylene has 905 kg/m^3."},
       {"weave.fibre_modulus", w.fibre_modulus, "GPa", 1e-9, above_to(0.0, w.fibre_modulus, 2e12),
        "must satisfy 0 < fibre_modulus <= 2000 GPa", "E-glass has 72.4 GPa."},
+      {"weave.warp_crimp", w.warp_crimp.value_or(0.5), "%", 100.0,
+       within(0.0, w.warp_crimp.value_or(0.5), 1.0), "must lie between 0 and 100 %",
+       "50 % is the balanced weave; leave it out for flush faces."},
       {"weave.fibre_diameter", w.fibre_diameter, "um", 1e6, above_to(0.0, w.fibre_diameter, 1e-3),
        "must satisfy 0 < fibre_diameter <= 1000 um", "Glass rovings have 10 to 25 um."},
   };
@@ -120,6 +124,31 @@ void check_forming(Problems& problems, const FormingSpec& f) {
 std::string key_of(std::size_t direction, bool own, const char* name) {
   const char* block = direction == 0 ? "weave.warp." : "weave.weft.";
   return own ? std::string(block) + name : std::string("weave.") + name;
+}
+
+void check_stack(Problems& problems, const StackSpec& stack) {
+  if (stack.plies < 1 || stack.plies > most_plies) {
+    problems.push_back({"*.range"_family.of("cell.plies"), "cell.plies", std::to_string(stack.plies),
+                        fmt::format("must lie between 1 and {}", most_plies),
+                        "Two plies show how they nest; a laminate of many tends to solid's stack of plies."});
+    return;
+  }
+  for (const auto& [key, shifts] :
+       {std::pair{"cell.shift_warp", &stack.along_warp}, {"cell.shift_weft", &stack.along_weft}}) {
+    if (!shifts->empty() && shifts->size() != static_cast<std::size_t>(stack.plies))
+      problems.push_back({"*.plies"_family.of(key),
+                          key,
+                          fmt::format("{} numbers", shifts->size()),
+                          fmt::format("must hold one number a ply, and cell.plies is {}", stack.plies),
+                          "Write 0 mm for a ply that is not shifted.",
+                          "",
+                          0,
+                          {"cell.plies"}});
+    for (const double shift : *shifts)
+      if (!(std::abs(shift) < 10.0))
+        problems.push_back({"*.range"_family.of(key), key, fmt::format("{:.6g} mm", 1e3 * shift),
+                            "must lie between -10 and 10 m", "Shifts repeat with the weave."});
+  }
 }
 
 struct TowKeys {
@@ -206,21 +235,41 @@ void check_proportions(Problems& problems, const WeaveSpec& w) {
 void check_thickness(Problems& problems, const WeaveSpec& w) {
   // One percent: Table 1 rounds to 0.05 mm, and the height of the crowns follows the tows, not the table.
   const std::array<double, 2> tow{w.tow(0).thickness, w.tow(1).thickness};
-  const double from_tows = tow[0] + tow[1];
+  const double from_tows = tow[0] + tow[1] + std::abs(w.crimp_excess());
   if (std::abs(w.fabric_thickness - from_tows) <= 0.01 * from_tows) return;
-  const bool alike = tow[0] == tow[1];
+  const bool alike = tow[0] == tow[1] && !w.warp_crimp;
   problems.push_back(
       {"weave.fabric_thickness.consistent"_rule,
        "weave.fabric_thickness",
        fmt::format("{:.6g} mm", 1e3 * w.fabric_thickness),
-       fmt::format("must be the two tow thicknesses on top of each other, {:.6g} mm, within 1 %",
-                   1e3 * from_tows),
+       fmt::format("must be the two tow thicknesses on top of each other{}, {:.6g} mm, within 1 %",
+                   w.warp_crimp ? " and what the higher crowns stand out" : "", 1e3 * from_tows),
        alike ? fmt::format("Write fabric_thickness: {:.6g} mm, or tow_thickness: {:.6g} mm.", 1e3 * from_tows,
                            0.5e3 * w.fabric_thickness)
              : fmt::format("Write fabric_thickness: {:.6g} mm.", 1e3 * from_tows),
        "",
        0,
        {keys_of(w, 0).thickness, keys_of(w, 1).thickness}});
+}
+
+// A path that rises further than its tows leave it room for jams on a radius below that of the section under
+// it, and would cut in.
+void check_crimp_room(Problems& problems, const WeaveSpec& w) {
+  if (!w.warp_crimp) return;
+  const double asked = w.crimp_excess(), room = excess_with_room(w, asked);
+  if (std::abs(asked - room) <= 1e-12 * w.fabric_thickness) return;
+  const double both = w.tow(0).thickness + w.tow(1).thickness;
+  problems.push_back({"weave.warp_crimp.room"_rule,
+                      "weave.warp_crimp",
+                      fmt::format("{:.6g} %", 100.0 * *w.warp_crimp),
+                      fmt::format("must be at {} {:.6g} %: the {}s would cut into the {}s they go round",
+                                  asked > room ? "most" : "least", 100.0 * (room + w.tow(1).thickness) / both,
+                                  asked > room ? "warp" : "weft", asked > room ? "weft" : "warp"),
+                      "Give a share nearer to 50 %, or wider gaps.",
+                      "",
+                      0,
+                      {keys_of(w, 0).width, keys_of(w, 1).width, keys_of(w, 0).gap, keys_of(w, 1).gap,
+                       keys_of(w, 0).thickness, keys_of(w, 1).thickness}});
 }
 
 // Each direction rises by the thickness of the other, so the thinner one crimps the more: beyond this it
@@ -262,13 +311,14 @@ const std::vector<std::string> keys_of_the_packing{"weave.pattern",
                                                    "weave.weft.gap",
                                                    "weave.weft.tow_thickness",
                                                    "weave.weft.linear_density",
-                                                   "cell.state"};
+                                                   "cell.state",
+                                                   "cell.thickness",
+                                                   "cell.pressure"};
 
 void check_packing(Problems& problems, const CellSpec& spec) {
   const FabricGeometry woven = fabric_geometry(spec.weave, CellState::as_woven);
   // The fullest tow decides: as woven, or squeezed flat in the consolidated sheet.
-  const FabricGeometry state =
-      spec.state == CellState::as_woven ? woven : fabric_geometry(spec.weave, spec.state);
+  const FabricGeometry state = spec.state == CellState::as_woven ? woven : fabric_geometry(spec);
   for (const std::size_t i : directions_of(spec.weave)) {
     const std::string key = keys_of(spec.weave, i).thickness;
     if (woven.tow_solid_fraction[i] > 1.0) {
@@ -301,6 +351,19 @@ TowSpec WeaveSpec::tow(std::size_t direction) const {
           tow.linear_density.value_or(linear_density)};
 }
 
+double WeaveSpec::crimp_excess() const {
+  if (!warp_crimp) return 0.0;
+  const double warp = tow(0).thickness, weft = tow(1).thickness;
+  return *warp_crimp * (warp + weft) - weft;
+}
+
+std::vector<std::array<double, 2>> StackSpec::shifts() const {
+  std::vector<std::array<double, 2>> shifts(static_cast<std::size_t>(plies), {0.0, 0.0});
+  for (std::size_t k = 0; k < shifts.size(); ++k)
+    shifts[k] = {along_warp.empty() ? 0.0 : along_warp[k], along_weft.empty() ? 0.0 : along_weft[k]};
+  return shifts;
+}
+
 Problems check(const CellSpec& spec) {
   Problems problems = check_pattern(spec.weave.pattern);
   const std::size_t before = problems.size();
@@ -311,11 +374,14 @@ Problems check(const CellSpec& spec) {
     check_proportions(problems, spec.weave);
     check_thickness(problems, spec.weave);
     check_balance(problems, spec.weave);
+    check_crimp_room(problems, spec.weave);
   }
-  // Packing needs a geometry, and so sound numbers.
-  if (problems.empty()) check_packing(problems, spec);
+  check_stack(problems, spec.stack);
   check_resin(problems, spec.resin);
   check_forming(problems, spec.forming);
+  // States and packing need a geometry, and so sound numbers.
+  if (problems.empty()) problems = check_state(spec);
+  if (problems.empty()) check_packing(problems, spec);
   return problems;
 }
 

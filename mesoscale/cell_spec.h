@@ -4,6 +4,7 @@
 #include <cstddef>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "core/problem.h"
 #include "mesoscale/fabric_properties.h"
@@ -47,6 +48,12 @@ struct WeaveSpec {
   double section_power = 0.5;   ///< n of the power ellipse [-]
   double section_cap = 0.6;     ///< arc of the capped lens over its width [-]
   std::array<OwnTow, 2> own{};  ///< {warp, weft}
+  /// h_warp / (h_warp + h_weft), of the crimp heights [-]; faces are flush unless it is given.
+  std::optional<double> warp_crimp{};
+
+  /// By how much the warp rises further than where faces are flush, h_warp - t_weft; the weft rises as much
+  /// less. The fabric is thicker by its size [m].
+  double crimp_excess() const;
 
   /// With what the direction has of its own. @param direction  0 = warp, 1 = weft
   TowSpec tow(std::size_t direction) const;
@@ -54,7 +61,9 @@ struct WeaveSpec {
   bool operator==(const WeaveSpec&) const = default;
 };
 
-enum class CellState { as_woven, consolidated };
+/// as_woven: as it leaves the loom; compacted: pressed to some thickness between the other two; consolidated:
+/// so far that no void is left.
+enum class CellState { as_woven, compacted, consolidated };
 
 /// Melt of the resin between crossing tows: power law with an Arrhenius shift. SI units.
 struct ResinSpec {
@@ -82,11 +91,28 @@ struct FormingSpec {
   double compression_ratio = 0.01;    ///< tangent in compression over tangent in tension [-]
 };
 
+/// Equal plies on one another, all turned alike. What they hold in common is a ply's; no forming law reads
+/// this.
+struct StackSpec {
+  int plies = 1;
+  /// Of each ply along warp and along weft, {xi, eta} of the weave [m]; as many as plies, or none: all on top
+  /// of each other.
+  std::vector<double> along_warp, along_weft;
+
+  /// {along warp, along weft} of each ply [m].
+  std::vector<std::array<double, 2>> shifts() const;
+};
+inline constexpr int most_plies = 8;
+
 struct CellSpec {
   WeaveSpec weave;
   CellState state = CellState::as_woven;
+  /// Of the compacted state, one of the two:
+  std::optional<double> compacted_thickness;  ///< H [m]
+  std::optional<double> compacted_pressure;   ///< of flat plates on both faces, which gives H [Pa]
   ResinSpec resin;
   FormingSpec forming;
+  StackSpec stack;
 };
 
 /// The first stage's answer: what the report shows of the cell.
@@ -101,6 +127,9 @@ struct CellSummary {
   double contact_area_fraction = 0.0;      ///< one face, depth 0.05 mm, gamma 0 [-]
   double tow_section_area = 0.0;           ///< vertical cut of a warp [m^2]
   double consolidated_thickness = 0.0;     ///< [m]
+  double thickness = 0.0;                  ///< of the state [m]
+  double tow_share = 0.0;                  ///< of the sheet's volume [-]
+  double glass_share = 0.0, void_share = 0.0;
 };
 
 struct CellResult {

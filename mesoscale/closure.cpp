@@ -23,9 +23,12 @@ double section_share(double area_along_fibres, double crimp, double section_area
 
 std::array<double, 2> as_woven_crimp(const WeaveSpec& weave, const std::array<double, 2>& interlacing) {
   const std::array<Section, 2> sections{section_of(weave, 0), section_of(weave, 1)};
+  const double excess = excess_with_room(weave, weave.crimp_excess());
   std::array<double, 2> crimp{};
   for (std::size_t i = 0; i < 2; ++i)
-    crimp[i] = interlacing[i] * path_over(sections[i], sections[1 - i], weave.tow(1 - i).pitch()).crimp();
+    crimp[i] =
+        interlacing[i] *
+        path_over(sections[i], sections[1 - i], weave.tow(1 - i).pitch(), i == 0 ? excess : -excess).crimp();
   return crimp;
 }
 

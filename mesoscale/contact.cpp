@@ -22,6 +22,8 @@ struct Quarter {
   std::size_t top;  ///< 0: the warp is the upper tow
   bool upper_floats, lower_floats;
   double depth;
+  /// Of the crowns of {warp, weft} below the plane of the highest, where faces are not flush [m].
+  std::array<double, 2> sunk;
 
   const TowGeometry& upper_tow() const { return crossing.tow[top]; }
   const TowGeometry& lower_tow() const { return crossing.tow[1 - top]; }
@@ -31,10 +33,11 @@ struct Quarter {
     return floats ? 0.0 : tow.path.drop(u);
   }
   double upper(double u, double v) const {
-    return path_drop(upper_tow(), upper_floats, u) + drop(upper_tow().section, v);
+    return path_drop(upper_tow(), upper_floats, u) + drop(upper_tow().section, v) + sunk[top];
   }
   double lower(double u, double v) const {
-    return lower_tow().path.height - path_drop(lower_tow(), lower_floats, v) + drop(lower_tow().section, u);
+    return lower_tow().path.height - path_drop(lower_tow(), lower_floats, v) + drop(lower_tow().section, u) +
+           sunk[1 - top];
   }
 
   struct Touched {
@@ -46,13 +49,13 @@ struct Quarter {
 };
 
 Quarter::Touched Quarter::touched(double u) const {
-  const double left = depth - path_drop(upper_tow(), upper_floats, u);
+  const double left = depth - sunk[top] - path_drop(upper_tow(), upper_floats, u);
   double end =
       left > 0.0 ? std::min(reach(upper_tow().section, left), 0.5 * width(upper_tow().section)) : 0.0;
   double start = breadth();
   const TowGeometry& below = lower_tow();
   if (u < 0.5 * width(below.section) && !lower_floats) {
-    const double must_fall = below.path.height + drop(below.section, u) - depth;
+    const double must_fall = below.path.height + drop(below.section, u) + sunk[1 - top] - depth;
     if (must_fall < 0.5 * below.path.height) start = below.path.reach(must_fall);
   }
   if (end > start) {
@@ -73,8 +76,9 @@ Quarter::Touched Quarter::touched(double u) const {
 std::array<double, 6> Quarter::kinks() const {
   const double edge = length();
   const ArcPath &over = upper_tow().path, &under = lower_tow().path;
-  const double fallen = upper_floats || depth >= 0.5 * over.height ? edge : over.reach(depth);
-  const double above_lower = depth - 0.5 * under.height;
+  const double below_crown = depth - sunk[top];
+  const double fallen = upper_floats || below_crown >= 0.5 * over.height ? edge : over.reach(below_crown);
+  const double above_lower = depth - sunk[1 - top] - 0.5 * under.height;
   const double lower_end = lower_floats ? 0.0 : reach(lower_tow().section, above_lower);
   std::array<double, 6> u{0.0,       fallen, std::min(over.wrap(), edge), 0.5 * width(lower_tow().section),
                           lower_end, edge};
@@ -93,10 +97,22 @@ double over_quarter(const Quarter& quarter, int panels, const Inside& inside) {
   return sum;
 }
 
+// Crowns of {warp, weft} below the highest.
+std::array<double, 2> sunk_crowns(const CrossingGeometry& crossing) {
+  const auto crown = [&](std::size_t i) {
+    return 0.5 * (crossing.tow[i].path.height + thickness(crossing.tow[i].section));
+  };
+  // Flush faces, but for rounding.
+  const double apart = crown(0) - crown(1);
+  if (std::abs(apart) <= 1e-14 * crown(0)) return {0.0, 0.0};
+  return {std::max(-apart, 0.0), std::max(apart, 0.0)};
+}
+
 template <class Inside>
 double cell_average(const PlateContact& plate, double depth, const Inside& inside) {
   // Of a balanced crossing it does not matter which tow is on top.
   const bool alike = plate.crossing.balanced();
+  const std::array<double, 2> sunk = sunk_crowns(plate.crossing);
   double sum = 0.0;
   for (std::size_t top = 0; top < (alike ? 1 : 2); ++top)
     for (std::size_t upper = 0; upper < 2; ++upper)
@@ -104,7 +120,7 @@ double cell_average(const PlateContact& plate, double depth, const Inside& insid
         const double share =
             plate.quarters[top][upper][lower] + (alike ? plate.quarters[1][upper][lower] : 0.0);
         if (share == 0.0) continue;
-        const Quarter quarter{plate.crossing, top, upper == 1, lower == 1, depth};
+        const Quarter quarter{plate.crossing, top, upper == 1, lower == 1, depth, sunk};
         sum += share * over_quarter(quarter, plate.panels, [&](double u, const Quarter::Touched& t) {
                  return inside(quarter, u, t);
                });

@@ -2,7 +2,20 @@
 
 #include <fmt/format.h>
 
+#include "mesoscale/state.h"
+
 namespace heddle::mesoscale {
+
+namespace {
+
+std::string state_text(const CellSpec& spec) {
+  if (spec.state == CellState::as_woven) return "as_woven";
+  if (spec.state == CellState::consolidated) return "consolidated";
+  return spec.compacted_thickness ? fmt::format("thickness {}", *spec.compacted_thickness)
+                                  : fmt::format("pressure {}", spec.compacted_pressure.value());
+}
+
+}  // namespace
 
 CompactionLaw compaction_law(const FormingSpec& forming) {
   CompactionLaw law{forming.compaction_modulus, forming.compaction_exponent};
@@ -15,7 +28,7 @@ CompactionLaw compaction_law(const FormingSpec& forming) {
 
 FormingModels forming_models(const CellSpec& spec) {
   FormingModels models;
-  models.fabric = fabric_geometry(spec.weave, spec.state);
+  models.fabric = fabric_geometry(spec);
   models.compaction = compaction_law(spec.forming);
   models.bending =
       bending_stiffness(fabric_geometry(spec.weave, CellState::consolidated),
@@ -39,10 +52,9 @@ std::string describe(const CellSpec& spec) {
       "weave {} {} {} {} {} {} {} {} {} {} {};state {};resin {} {} {} {} {};forming {} {} {} {} {} {} {}",
       w.pattern, w.tow_width, w.gap, w.tow_thickness, w.fabric_thickness, w.linear_density,
       w.fibre_mass_fraction, w.fibre_density, w.resin_density, w.fibre_modulus, w.fibre_diameter,
-      spec.state == CellState::as_woven ? "as_woven" : "consolidated", r.consistency, r.power_index,
-      r.film_thickness, r.activation_energy, r.reference_temperature, f.compaction_modulus,
-      f.compaction_exponent, f.tow_friction, f.reference_tension, f.in_tow_shear_share, f.bonding,
-      f.compression_ratio);
+      state_text(spec), r.consistency, r.power_index, r.film_thickness, r.activation_energy,
+      r.reference_temperature, f.compaction_modulus, f.compaction_exponent, f.tow_friction,
+      f.reference_tension, f.in_tow_shear_share, f.bonding, f.compression_ratio);
   if (w.own != std::array<OwnTow, 2>{})
     for (std::size_t i = 0; i < 2; ++i) {
       const TowSpec tow = w.tow(i);
@@ -51,6 +63,7 @@ std::string describe(const CellSpec& spec) {
   const WeaveSpec lens;
   if (w.section != lens.section || w.section_power != lens.section_power || w.section_cap != lens.section_cap)
     text += fmt::format(";section {} {} {}", static_cast<int>(w.section), w.section_power, w.section_cap);
+  if (w.warp_crimp) text += fmt::format(";warp_crimp {}", *w.warp_crimp);
   if (f.compaction != CompactionChoice::toll)
     text += fmt::format(";compaction {} {} {}", static_cast<int>(f.compaction), f.gutowski_spring,
                         f.gutowski_available);

@@ -67,25 +67,26 @@ class TubeBuilder {
   int index_, stations_, across_;
 };
 
-Outline warp_band(const UnitCell& cell, int warp, int points_per_pitch) {
+// A cut at `across` from the middle of the warp, from `start` on over one repeat.
+Outline warp_band(const UnitCell& cell, int warp, double across, double start, int points_per_pitch) {
   Outline band{TowDirection::warp, {}};
   const int steps = points_per_pitch * cell.weave.wefts;
-  const double half = half_height(cell.tow[0].section, 0.0), pitch = cell.tow[1].spacing;
+  const double half = half_height(cell.tow[0].section, across), pitch = cell.tow[1].spacing;
   for (int k = 0; k <= steps; ++k) {
-    const double along = pitch * k / points_per_pitch;
+    const double along = start + pitch * k / points_per_pitch;
     band.points.push_back({along, warp_centre(cell, warp, along) + half});
   }
   for (int k = steps; k >= 0; --k) {
-    const double along = pitch * k / points_per_pitch;
+    const double along = start + pitch * k / points_per_pitch;
     band.points.push_back({along, warp_centre(cell, warp, along) - half});
   }
   return band;
 }
 
-Outline weft_section(const UnitCell& cell, int warp, int weft, int points_per_pitch) {
+Outline weft_section(const UnitCell& cell, double eta, int weft, int points_per_pitch) {
   Outline section{TowDirection::weft, {}};
   const Section& shape = cell.tow[1].section;
-  const double w = width(shape), centre = weft_centre(cell, weft, warp * cell.tow[0].spacing);
+  const double w = width(shape), centre = weft_centre(cell, weft, eta);
   for (int k = 0; k < 2 * points_per_pitch; ++k) {
     const bool upper = k < points_per_pitch;
     const double share = static_cast<double>(upper ? k : 2 * points_per_pitch - k) / points_per_pitch;
@@ -136,9 +137,32 @@ TriangleMesh tow_surfaces(const UnitCell& cell, int along, int across) {
 }
 
 std::vector<Outline> warp_cut(const UnitCell& cell, int warp, int points_per_pitch) {
-  std::vector<Outline> cut{warp_band(cell, warp, points_per_pitch)};
+  std::vector<Outline> cut{warp_band(cell, warp, 0.0, 0.0, points_per_pitch)};
   // The last weft closes the picture: it is the first of the next repeat.
-  for (int j = 0; j <= cell.weave.wefts; ++j) cut.push_back(weft_section(cell, warp, j, points_per_pitch));
+  for (int j = 0; j <= cell.weave.wefts; ++j)
+    cut.push_back(weft_section(cell, warp * cell.tow[0].spacing, j, points_per_pitch));
+  return cut;
+}
+
+std::vector<Outline> stack_cut(const PlyStack& stack, int points_per_pitch) {
+  const UnitCell& cell = stack.ply;
+  std::vector<Outline> cut;
+  for (std::size_t ply = 0; ply < stack.height.size(); ++ply) {
+    const auto [along, across] = stack.shift[ply];
+    const auto place = [&](Outline outline) {
+      for (auto& point : outline.points) point = {point[0] + along, point[1] + stack.height[ply]};
+      cut.push_back(std::move(outline));
+    };
+    // The plane of the cut and the start of the repeat, as the ply counts them.
+    const double eta = -across, start = -along;
+    const int warp = static_cast<int>(std::lround(eta / cell.tow[0].spacing));
+    const double off = eta - warp * cell.tow[0].spacing;
+    if (std::abs(off) < 0.5 * width(cell.tow[0].section))
+      place(warp_band(cell, warp, off, start, points_per_pitch));
+    const int first = static_cast<int>(std::lround(start / cell.tow[1].spacing));
+    for (int weft = first; weft <= first + cell.weave.wefts; ++weft)
+      place(weft_section(cell, eta, weft, points_per_pitch));
+  }
   return cut;
 }
 

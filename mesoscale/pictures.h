@@ -6,6 +6,7 @@
 
 #include "core/triangle_mesh.h"
 #include "mesoscale/cell.h"
+#include "mesoscale/nesting.h"
 
 namespace heddle::mesoscale {
 
@@ -44,5 +45,9 @@ struct Outline {
 /// sections. Distances are along xi, in which an oblique cut through a sheared fabric keeps the parameter
 /// width.
 std::vector<Outline> warp_cut(const UnitCell& cell, int warp = 0, int points_per_pitch = 48);
+
+/// The same of a stack, along the middle of the lowest ply's first warp: what each ply shows there, which is
+/// its own middle only where it is not shifted across.
+std::vector<Outline> stack_cut(const PlyStack& stack, int points_per_pitch = 48);
 
 }  // namespace heddle::mesoscale

@@ -114,7 +114,9 @@ TensionModel::State TensionModel::relax(const std::array<double, 2>& strain) con
 TensionModel::State TensionModel::relax(const std::array<double, 2>& strain,
                                         std::array<double, 2> height) const {
   Trial now = trial_at(*this, strain, height);
-  const double thinner = std::min(tow[0].rest_height, tow[1].rest_height);
+  // A straight tow has no height of its own to measure by.
+  const double thinner = std::max(std::min(tow[0].rest_height, tow[1].rest_height),
+                                  0.1 * (tow[0].rest_height + tow[1].rest_height));
   constexpr int most = 200;  // convex, so Newton with a line search ends; the table needs 6 on average
   for (int iteration = 0; iteration < most; ++iteration) {
     const std::array<double, 2> step = newton_step(now);

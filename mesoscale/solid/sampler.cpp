@@ -67,16 +67,31 @@ int direction_bin(double rise, double run) {
   return direction_middle + static_cast<int>(std::lround(std::atan2(rise, run) / direction_step));
 }
 
+// A ply as it lies in the cell: shifted, and its middle above that of the cell [m].
+struct PlacedPly {
+  double xi = 0.0, eta = 0.0, z = 0.0;
+};
+
+// Places of a ply's warps and wefts among the shares.
+constexpr std::size_t warps_of(std::size_t ply) {
+  return 2 * ply;
+}
+constexpr std::size_t wefts_of(std::size_t ply) {
+  return 2 * ply + 1;
+}
+
 class Sampler {
  public:
-  Sampler(const UnitCell& cell, double thickness, const SamplerOptions& options)
+  Sampler(const UnitCell& cell, std::vector<PlacedPly> plies, double thickness, const SamplerOptions& options)
       : cell_(cell),
+        plies_(std::move(plies)),
         options_(options),
         thickness_(thickness),
-        count_{options.per_pitch * cell.weave.wefts, options.per_pitch * cell.weave.warps, options.layers},
+        count_{options.per_pitch * cell.weave.wefts, options.per_pitch * cell.weave.warps,
+               options.layers * static_cast<int>(plies_.size())},
         step_{cell.tow[1].spacing / options.per_pitch, cell.tow[0].spacing / options.per_pitch},
-        height_(thickness / options.layers),
-        share_(2, std::vector<float>(voxels())) {
+        height_(thickness / count_[2]),
+        share_(2 * plies_.size(), std::vector<float>(voxels())) {
     const std::array<double, 2> size = cell.size();
     const auto x = cell.place(size[0], 0.0), y = cell.place(0.0, size[1]);
     edges_ << x[0], y[0], 0.0, x[1], y[1], 0.0, 0.0, 0.0, thickness;
@@ -97,19 +112,22 @@ class Sampler {
   }
 
   void fill_shares(int j) {
-    std::vector<double> sums(2 * static_cast<std::size_t>(count_[2]));
+    const std::size_t tows = share_.size();
+    std::vector<double> sums(tows * static_cast<std::size_t>(count_[2]));
     for (int i = 0; i < count_[0]; ++i) {
       std::fill(sums.begin(), sums.end(), 0.0);
       for (int b = 0; b < across_voxel; ++b)
-        for (int a = 0; a < across_voxel; ++a) {
-          const Column c = column(cell_, (i + (a + 0.5) / across_voxel) * step_[0],
-                                  (j + (b + 0.5) / across_voxel) * step_[1]);
-          if (c.warp) add(c.warp_bottom, c.warp_top, 0, sums);
-          if (c.weft) add(c.weft_bottom, c.weft_top, 1, sums);
-        }
+        for (int a = 0; a < across_voxel; ++a)
+          for (std::size_t p = 0; p < plies_.size(); ++p) {
+            const PlacedPly& ply = plies_[p];
+            const Column c = column(cell_, (i + (a + 0.5) / across_voxel) * step_[0] - ply.xi,
+                                    (j + (b + 0.5) / across_voxel) * step_[1] - ply.eta);
+            if (c.warp) add(c.warp_bottom + ply.z, c.warp_top + ply.z, warps_of(p), sums);
+            if (c.weft) add(c.weft_bottom + ply.z, c.weft_top + ply.z, wefts_of(p), sums);
+          }
       for (int k = 0; k < count_[2]; ++k)
-        for (std::size_t tow = 0; tow < 2; ++tow)
-          share_[tow][at(i, j, k)] = static_cast<float>(sums[2 * static_cast<std::size_t>(k) + tow] /
+        for (std::size_t tow = 0; tow < tows; ++tow)
+          share_[tow][at(i, j, k)] = static_cast<float>(sums[tows * static_cast<std::size_t>(k) + tow] /
                                                         (across_voxel * across_voxel * height_));
     }
   }
@@ -120,27 +138,51 @@ class Sampler {
     const int first = std::clamp(static_cast<int>((bottom - low) / height_), 0, count_[2] - 1);
     const int last = std::clamp(static_cast<int>((top - low) / height_), 0, count_[2] - 1);
     for (int k = first; k <= last; ++k)
-      sums[2 * static_cast<std::size_t>(k) + tow] +=
+      sums[share_.size() * static_cast<std::size_t>(k) + tow] +=
           overlap(low + k * height_, low + (k + 1) * height_, bottom, top);
   }
 
-  void fill_keys(int j, std::vector<Key>& keys) const {
-    const double eta = (j + 0.5) * step_[1];
-    for (int i = 0; i < count_[0]; ++i) {
-      const double xi = (i + 0.5) * step_[0];
+  // Bins of the tows of each ply over a column of voxels, in the order of the shares.
+  std::vector<int> bins_over(int i, int j) const {
+    std::vector<int> bins;
+    for (const PlacedPly& ply : plies_) {
+      const double xi = (i + 0.5) * step_[0] - ply.xi, eta = (j + 0.5) * step_[1] - ply.eta;
       const int warp = static_cast<int>(std::lround(eta / cell_.tow[0].spacing)),
                 weft = static_cast<int>(std::lround(xi / cell_.tow[1].spacing));
       const double warp_rise =
           warp_centre(cell_, warp, xi + 0.5 * step_[0]) - warp_centre(cell_, warp, xi - 0.5 * step_[0]);
       const double weft_rise =
           weft_centre(cell_, weft, eta + 0.5 * step_[1]) - weft_centre(cell_, weft, eta - 0.5 * step_[1]);
-      const int warp_bin = direction_bin(warp_rise, step_[0]), weft_bin = direction_bin(weft_rise, step_[1]);
-      for (int k = 0; k < count_[2]; ++k) keys[at(i, j, k)] = recipe(i, j, k, warp_bin, weft_bin).key();
+      bins.push_back(direction_bin(warp_rise, step_[0]));
+      bins.push_back(direction_bin(weft_rise, step_[1]));
+    }
+    return bins;
+  }
+
+  void fill_keys(int j, std::vector<Key>& keys) const {
+    for (int i = 0; i < count_[0]; ++i) {
+      const std::vector<int> bins = bins_over(i, j);
+      for (int k = 0; k < count_[2]; ++k) keys[at(i, j, k)] = recipe(i, j, k, bins).key();
     }
   }
 
-  Recipe recipe(int i, int j, int k, int warp_bin, int weft_bin) const {
-    const double warp = share_[0][at(i, j, k)], weft = share_[1][at(i, j, k)];
+  // Of the warps (first = 0) or wefts (1) of all plies.
+  double share(std::size_t first, std::size_t voxel) const {
+    double sum = 0.0;
+    for (std::size_t tow = first; tow < share_.size(); tow += 2)
+      sum += static_cast<double>(share_[tow][voxel]);
+    return sum;
+  }
+  int bin_of_most(std::size_t first, std::size_t voxel, const std::vector<int>& bins) const {
+    std::size_t most = first;
+    for (std::size_t tow = first; tow < share_.size(); tow += 2)
+      if (share_[tow][voxel] > share_[most][voxel]) most = tow;
+    return bins[most];
+  }
+
+  Recipe recipe(int i, int j, int k, const std::vector<int>& bins) const {
+    const std::size_t voxel = at(i, j, k);
+    const double warp = share(0, voxel), weft = share(1, voxel);
     Recipe r;
     if (options_.mixing == Mixing::dominant) {
       const double resin = 1.0 - warp - weft;
@@ -152,8 +194,8 @@ class Sampler {
       r.warp = static_cast<int>(std::lround(share_steps * warp));
       r.weft = std::min(static_cast<int>(std::lround(share_steps * weft)), share_steps - r.warp);
     }
-    if (r.warp > 0) r.warp_direction = warp_bin;
-    if (r.weft > 0) r.weft_direction = weft_bin;
+    if (r.warp > 0) r.warp_direction = bin_of_most(0, voxel, bins);
+    if (r.weft > 0) r.weft_direction = bin_of_most(1, voxel, bins);
     const bool pure = r.warp + r.weft == 0 || r.warp == share_steps || r.weft == share_steps;
     if (!pure) r.normal = normal(r.warp >= r.weft ? 0 : 1, i, j, k);
     return r;
@@ -162,14 +204,14 @@ class Sampler {
   // Of the surface of a tow, by the gradient of its share; upwards.
   std::array<int, 3> normal(std::size_t tow, int i, int j, int k) const {
     const auto wrap = [](int n, int size) { return (n + size) % size; };
-    const auto share = [&](int x, int y, int z) {
-      return static_cast<double>(share_[tow][at(wrap(x, count_[0]), wrap(y, count_[1]), z)]);
+    const auto share_at = [&](int x, int y, int z) {
+      return share(tow, at(wrap(x, count_[0]), wrap(y, count_[1]), z));
     };
     const int low = std::max(k - 1, 0), high = std::min(k + 1, count_[2] - 1);
     const Eigen::Vector3d in_cell(
-        0.5 * count_[0] * (share(i + 1, j, k) - share(i - 1, j, k)),
-        0.5 * count_[1] * (share(i, j + 1, k) - share(i, j - 1, k)),
-        high == low ? 0.0 : count_[2] * (share(i, j, high) - share(i, j, low)) / (high - low));
+        0.5 * count_[0] * (share_at(i + 1, j, k) - share_at(i - 1, j, k)),
+        0.5 * count_[1] * (share_at(i, j + 1, k) - share_at(i, j - 1, k)),
+        high == low ? 0.0 : count_[2] * (share_at(i, j, high) - share_at(i, j, low)) / (high - low));
     Eigen::Vector3d n = to_reference_ * in_cell;
     // A share that is the same all round has no interface to speak of; across the sheet is as good as any.
     if (!(n.norm() > 1e-9 / thickness_)) return {0, 0, normal_steps};
@@ -238,19 +280,27 @@ class Sampler {
   }
 
   const UnitCell& cell_;
+  std::vector<PlacedPly> plies_;
   SamplerOptions options_;
   double thickness_;
   std::array<int, 3> count_;
   std::array<double, 2> step_;  // along {xi, eta}
   double height_;
   Eigen::Matrix3d edges_, to_reference_;
-  std::vector<std::vector<float>> share_;  // of warps and wefts
+  std::vector<std::vector<float>> share_;  // of the warps and the wefts of each ply
 };
 
 }  // namespace
 
 VoxelCell sample(const UnitCell& cell, double thickness, const SamplerOptions& options) {
-  return Sampler(cell, thickness, options).run();
+  return Sampler(cell, {PlacedPly{}}, thickness, options).run();
+}
+
+VoxelCell sample(const PlyStack& stack, const SamplerOptions& options) {
+  std::vector<PlacedPly> plies;
+  for (std::size_t k = 0; k < stack.height.size(); ++k)
+    plies.push_back({stack.shift[k][0], stack.shift[k][1], stack.middle(k)});
+  return Sampler(stack.ply, std::move(plies), stack.thickness, options).run();
 }
 
 }  // namespace heddle::mesoscale::solid

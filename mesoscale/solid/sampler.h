@@ -1,6 +1,7 @@
 #pragma once
 
 #include "mesoscale/cell.h"
+#include "mesoscale/nesting.h"
 #include "mesoscale/solid/voxel_cell.h"
 
 namespace heddle::mesoscale::solid {
@@ -27,5 +28,9 @@ inline constexpr std::uint16_t resin_phase = 0, warp_phase = 1, weft_phase = 2;
 /// @param thickness  of the fabric: crown to crown [m]
 /// @throws NumericalError  if the grid asks for more than 65535 different voxels
 VoxelCell sample(const UnitCell& cell, double thickness, const SamplerOptions& options);
+
+/// The same of plies on one another, `layers` voxels over each ply's share of the thickness. In a voxel that
+/// holds warps (wefts) of two plies, all have the direction of those that fill more of it.
+VoxelCell sample(const PlyStack& stack, const SamplerOptions& options);
 
 }  // namespace heddle::mesoscale::solid

@@ -107,7 +107,35 @@ ShearedSolid sheared_solid(const FabricGeometry& fabric, double angle, double fi
   return result;
 }
 
+LaminateSolid laminate_of(const FabricGeometry& fabric, const PlateStiffness& ply, double fibre_modulus,
+                          const SolidSpec& spec) {
+  const StackedFabric stack = consolidated_stack(fabric, 0.0, spec.stack.shifts());
+  const WovenSolid solid = woven_solid(stack, fibre_modulus, spec);
+  const PlateStiffness plate = plate_stiffness(elastic_cell(solid.cell, solid.stiffness), spec.solver);
+  LaminateSolid result;
+  result.plies = spec.stack.plies;
+  result.thickness = stack.stack.thickness;
+  result.swelling = stack.swelling;
+  result.fibre_fraction =
+      std::max(stack.crossing.tow[0].fibre_fraction, stack.crossing.tow[1].fibre_fraction);
+  const std::vector<double> shares = phase_shares(solid.cell, 3);
+  result.tow_share = shares[warp_phase] + shares[weft_phase];
+  result.converged = plate.solver.converged;
+  result.plate = plate.all;
+  result.apart = laminated(ply.all, fabric.thickness, spec.stack.plies);
+  return result;
+}
+
 }  // namespace
+
+Matrix6 laminated(const Matrix6& ply, double thickness, int plies) {
+  // Middles stand at z, evenly about that of the laminate, so the sum of z is nothing:
+  // D = sum(D1 + z^2 A1), and B = sum(B1).
+  const double n = plies, squares = thickness * thickness * n * (n * n - 1.0) / 12.0;
+  Matrix6 all = n * ply;
+  all.bottomRightCorner<3, 3>() += squares * ply.topLeftCorner<3, 3>();
+  return all;
+}
 
 Vector6 free_strain(const Matrix6& stiffness, const Vector6& held) {
   return stiffness.llt().solve(held);
@@ -131,6 +159,7 @@ SolidResult analyse(const WeaveSpec& weave, const SolidSpec& spec) {
   result.balance = balance_of(result);
   for (const double angle : spec.shear_angles)
     result.sheared.push_back(sheared_solid(fabric, angle, weave.fibre_modulus, spec));
+  if (spec.stack.plies > 1) result.laminate = laminate_of(fabric, *result.plate, weave.fibre_modulus, spec);
   return result;
 }
 

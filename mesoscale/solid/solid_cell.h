@@ -22,6 +22,7 @@ struct SolidSpec {
   double fibre_expansion = 5e-6;      ///< of E-glass [1/K]; recalled
   double resin_expansion = 1.2e-4;  ///< of solid polypropylene [1/K], linear; recalled, grades differ by 30 %
   std::vector<double> shear_angles;  ///< trellis angles of the table, besides the unsheared ply [rad]
+  StackSpec stack;                   ///< plies of a laminate, besides the lone ply; one: no laminate
   SolverOptions solver;
 };
 
@@ -57,6 +58,22 @@ struct ShearedSolid {
   std::array<Vector6, held_causes> stack_held{};  ///< [Pa/K] and [Pa]
 };
 
+/// Plies consolidated together (nesting.h), unsheared.
+struct LaminateSolid {
+  int plies = 0;
+  double thickness = 0.0;       ///< [m]
+  double swelling = 1.0;        ///< tow thickness over that of the lone ply [-]
+  double fibre_fraction = 0.0;  ///< of its fuller tows [-]
+  double tow_share = 0.0;       ///< volume of the tows [-]
+  bool converged = false;
+  Matrix6 plate;  ///< [A B; B D] of the laminate
+  Matrix6 apart;  ///< of as many lone plies by classical lamination: a lower bound where plies do not nest
+};
+
+/// [A B; B D] of equal plies on one another that bend and stretch together but otherwise know nothing of
+/// each other. @param ply  [A B; B D] of one  @param thickness  of one [m]
+Matrix6 laminated(const Matrix6& ply, double thickness, int plies);
+
 struct SolidResult {
   std::array<int, 3> voxels{};
   double thickness = 0.0;                  ///< of the cell [m]
@@ -67,8 +84,9 @@ struct SolidResult {
   double tow_share = 0.0;  ///< of a weave: volume of the tows [-]
   std::size_t different_voxels = 0;
   std::vector<ShearedSolid> sheared;  ///< of a weave, at the angles asked for
-  bool balanced = true;               ///< warp and weft can be exchanged, as far as is known
-  std::vector<BalancePair> balance;   ///< all that were compared: none if they cannot
+  std::optional<LaminateSolid> laminate;
+  bool balanced = true;              ///< warp and weft can be exchanged, as far as is known
+  std::vector<BalancePair> balance;  ///< all that were compared: none if they cannot
 };
 
 /// What a balanced weave has twice; nothing of one that is not.

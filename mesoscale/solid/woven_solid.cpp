@@ -1,13 +1,17 @@
 #include "mesoscale/solid/woven_solid.h"
 
+#include <utility>
+
 namespace heddle::mesoscale::solid {
 
-WovenSolid woven_solid(const WeaveMatrix& weave, const PressedFabric& fabric, double fibre_modulus,
-                       const SolidSpec& spec) {
+namespace {
+
+WovenSolid filled(VoxelCell cell, const CrossingGeometry& crossing, double fibre_modulus,
+                  const SolidSpec& spec) {
   const IsotropicPhase fibre{fibre_modulus, spec.fibre_poisson};
-  const auto& [warp, weft] = fabric.crossing.tow;
+  const auto& [warp, weft] = crossing.tow;
   WovenSolid solid;
-  solid.cell = sample(unit_cell(weave, fabric.crossing), fabric.thickness, spec.grid);
+  solid.cell = std::move(cell);
   solid.tows = {tow(spec.tow_model, fibre, spec.resin, warp.fibre_fraction),
                 tow(spec.tow_model, fibre, spec.resin, weft.fibre_fraction)};
   const std::array phases{stiffness(spec.resin), stiffness(solid.tows[0]), stiffness(solid.tows[1])};
@@ -21,6 +25,18 @@ WovenSolid woven_solid(const WeaveMatrix& weave, const PressedFabric& fabric, do
   };
   solid.held = {held(spec.fibre_expansion, spec.resin_expansion), held(0.0, 1.0)};
   return solid;
+}
+
+}  // namespace
+
+WovenSolid woven_solid(const WeaveMatrix& weave, const PressedFabric& fabric, double fibre_modulus,
+                       const SolidSpec& spec) {
+  return filled(sample(unit_cell(weave, fabric.crossing), fabric.thickness, spec.grid), fabric.crossing,
+                fibre_modulus, spec);
+}
+
+WovenSolid woven_solid(const StackedFabric& fabric, double fibre_modulus, const SolidSpec& spec) {
+  return filled(sample(fabric.stack, spec.grid), fabric.crossing, fibre_modulus, spec);
 }
 
 }  // namespace heddle::mesoscale::solid

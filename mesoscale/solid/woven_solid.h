@@ -17,5 +17,7 @@ struct WovenSolid {
 
 WovenSolid woven_solid(const WeaveMatrix& weave, const PressedFabric& fabric, double fibre_modulus,
                        const SolidSpec& spec);
+/// Of plies on one another.
+WovenSolid woven_solid(const StackedFabric& fabric, double fibre_modulus, const SolidSpec& spec);
 
 }  // namespace heddle::mesoscale::solid

@@ -171,10 +171,12 @@ std::string name_of(Dimension dimension) {
 
 CellSpec changed(CellSpec cell, Dimension dimension, double by) {
   WeaveSpec& weave = cell.weave;
+  const double excess = std::abs(weave.crimp_excess());
   length_of(weave, dimension) += by;
   for (OwnTow& own : weave.own)
     if (std::optional<double>& length = own_length_of(own, dimension)) *length += by;
-  if (dimension == Dimension::tow_thickness) weave.fabric_thickness += 2.0 * by;
+  if (dimension == Dimension::tow_thickness)
+    weave.fabric_thickness += 2.0 * by + (std::abs(weave.crimp_excess()) - excess);
   return cell;
 }
 

@@ -111,6 +111,38 @@ TEST_CASE("a warp with a free weft straightens at its own crimp", "[tension]") {
         Approx(100.0 * c.tow[0].path.crimp()).margin(0.002));
 }
 
+// Inextensible tows l0 on saw-teeth, rigid where they cross, without friction or bending: heights follow from
+// lengths, h_i = sqrt(l0^2 - p^2 (1 + e_i)^2), they add up to what they did, and N1 sin th1 = N2 sin th2
+// makes n1 / n2 = tan th2 / tan th1. Source: Kawabata's model in this limit.
+TEST_CASE("inextensible saw-tooth tows exchange crimp and share tension by the closed form",
+          "[tension][analytic]") {
+  TensionOptions options;
+  options.form = PathForm::saw_tooth;
+  options.fibre_modulus = 72.4e12;
+  options.compression_ratio = 0.0;
+  TensionModel model = tension_model(table1(), CompactionLaw{3.2e13, 5.0}, options);
+  for (TensionTow& tow : model.tow) {
+    tow.stretch.straightening = 1e-6;
+    tow.crimp_stiffness = 1e-3;  // next to nothing, but a slack tow's height must be something
+  }
+  const double p = model.tow[0].spacing, t = 0.75e-3, l = std::hypot(p, t);
+  const auto height = [&](double e) { return std::sqrt(l * l - p * p * (1.0 + e) * (1.0 + e)); };
+  for (const double e1 : {0.002, 0.005, 0.008}) {
+    const double h1 = height(e1), h2 = 2.0 * t - h1;
+    const double e2 = std::sqrt(l * l - h2 * h2) / p - 1.0;
+    CAPTURE(e1, e2);
+    CHECK(e2 < 0.0);  // the weft draws in
+    // A hair more than the tows have to give, so that they carry.
+    const TensionModel::State state = model.relax({e1, e2 + 3e-6});
+    CHECK(state.height[0] == Approx(h1).epsilon(1e-3));
+    CHECK(state.height[1] == Approx(h2).epsilon(1e-3));
+    const double ratio = (h2 / (1.0 + e2)) / (h1 / (1.0 + e1));
+    CHECK(state.tension[1] > 0.0);
+    CHECK(state.tension[0] / state.tension[1] == Approx(ratio).epsilon(2e-3));
+    CHECK(state.tension[0] / state.tension[1] != Approx(1.01 * ratio).epsilon(2e-3));
+  }
+}
+
 TEST_CASE("a straightened fabric is as stiff as its glass", "[tension]") {
   const TensionModel& model = table1_models().tension;
   const double slope =
