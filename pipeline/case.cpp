@@ -27,6 +27,9 @@ void note_assumptions(Case& a_case) {
   if (a_case.stamping && a_case.cell->state == mesoscale::CellState::consolidated)
     a_case.notes.push_back(
         "cell.state = consolidated: the solid part's fabric is stamped, not the molten one");
+  if (a_case.cell && a_case.cell->state == mesoscale::CellState::compacted)
+    a_case.notes.push_back(
+        "cell.state = compacted: the forming laws take the fabric as free of stress at its thickness");
   if (a_case.stamping && a_case.stamping->process.blank_temperature < melting_range_of_polypropylene)
     a_case.notes.push_back(fmt::format(
         "process.blank_temperature = {} lies below the melting range of polypropylene (about 160 degC, "
@@ -142,8 +145,10 @@ Case read_case_and_tools(const std::filesystem::path& file, const std::vector<st
 std::vector<std::string> stage_lines(const Case& a_case) {
   std::vector<std::string> lines;
   if (a_case.cell) {
-    lines.push_back(fmt::format("mesoscale: {} weave, {}", a_case.cell->weave.pattern,
-                                a_case.settings.text("cell.state")));
+    const int plies = a_case.cell->stack.plies;
+    lines.push_back(fmt::format("mesoscale: {} weave, {}{}", a_case.cell->weave.pattern,
+                                a_case.settings.text("cell.state"),
+                                plies > 1 ? fmt::format(", a stack of {} plies", plies) : ""));
   }
   if (a_case.solid)
     lines.push_back(fmt::format("solid: stiffness of the consolidated weave, {} voxels a pitch, {} layers",

@@ -133,6 +133,7 @@ Problems check_pulled_weave(const Case& a_case) {
   if (!a_case.cell || !a_case.friction->calibrated()) return {};
   mesoscale::CellSpec pulled = *a_case.cell;
   pulled.weave = a_case.friction->calibration_weave;
+  if (pulled.state == mesoscale::CellState::compacted) pulled.state = mesoscale::CellState::as_woven;
   Problems problems;
   for (const Problem& problem : mesoscale::check(pulled)) {
     if (!problem.key.starts_with("weave.")) continue;

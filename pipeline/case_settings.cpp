@@ -68,6 +68,7 @@ mesoscale::WeaveSpec weave_of(const Settings& settings, const std::string& block
   weave.section = section_of(settings, block + ".section");
   take(settings, block + ".section_power", weave.section_power);
   take(settings, block + ".section_cap", weave.section_cap);
+  if (settings.has(block + ".warp_crimp")) weave.warp_crimp = settings.number(block + ".warp_crimp");
   weave.own = {own_tow_of(settings, block + ".warp."), own_tow_of(settings, block + ".weft.")};
   return weave;
 }
@@ -99,13 +100,26 @@ mesoscale::FormingSpec forming_of(const Settings& settings) {
   return forming;
 }
 
+mesoscale::StackSpec stack_of(const Settings& settings) {
+  mesoscale::StackSpec stack;
+  if (settings.has("cell.plies")) stack.plies = settings.integer("cell.plies");
+  if (settings.has("cell.shift_warp")) stack.along_warp = settings.many("cell.shift_warp");
+  if (settings.has("cell.shift_weft")) stack.along_weft = settings.many("cell.shift_weft");
+  return stack;
+}
+
 mesoscale::CellSpec cell_of(const Settings& settings) {
   mesoscale::CellSpec cell;
   cell.weave = weave_of(settings, "weave");
-  cell.state = settings.is("cell.state", "consolidated") ? mesoscale::CellState::consolidated
-                                                         : mesoscale::CellState::as_woven;
+  if (settings.is("cell.state", "consolidated")) cell.state = mesoscale::CellState::consolidated;
+  if (settings.is("cell.state", "compacted")) {
+    cell.state = mesoscale::CellState::compacted;
+    if (settings.has("cell.thickness")) cell.compacted_thickness = settings.number("cell.thickness");
+    if (settings.has("cell.pressure")) cell.compacted_pressure = settings.number("cell.pressure");
+  }
   cell.resin = resin_of(settings);
   cell.forming = forming_of(settings);
+  cell.stack = stack_of(settings);
   return cell;
 }
 
@@ -291,7 +305,10 @@ Case case_of(const ReadConfig& config, const std::filesystem::path& folder) {
   Case result;
   take(settings, "name", result.name);
   if (runs(Stage::cell)) result.cell = cell_of(settings);
-  if (runs(Stage::solid)) result.solid = solid_of(settings);
+  if (runs(Stage::solid)) {
+    result.solid = solid_of(settings);
+    result.solid->stack = stack_of(settings);
+  }
   if (runs(Stage::voxels)) result.voxels = voxels_of(settings, folder);
   if (runs(Stage::friction)) result.friction = friction_of(settings, folder);
   if (runs(Stage::friction_test)) result.friction_test = friction_test_of(settings, folder);

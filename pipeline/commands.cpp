@@ -21,6 +21,7 @@
 #include "pipeline/run_folder.h"
 #include "pipeline/solid_stage.h"
 #include "pipeline/solid_store.h"
+#include "pipeline/stack_report.h"
 #include "pipeline/stage_keys.h"
 #include "pipeline/stage_store.h"
 #include "pipeline/stages.h"
@@ -39,6 +40,7 @@ constexpr double degrees = 180.0 / std::numbers::pi;
 struct Findings {
   std::optional<mesoscale::CellResult> cell;
   std::optional<WeavePictures> pictures;
+  std::optional<StackView> stack;
   std::optional<mesoscale::solid::SolidResult> solid;
   std::optional<FrictionStage> friction;
   std::optional<FrictionRigStage> friction_rig;
@@ -83,6 +85,10 @@ void run_cell(const Case& a_case, RunFolder& folder, const Cache& cache, Finding
   folder.write("mesoscale/bias_extension.csv", bias_extension_csv(fabric));
   folder.write("mesoscale/tows.stl", tows_stl(findings.pictures->tows));
   folder.write("mesoscale/cell.vti", vti(findings.pictures->voxels));
+  if (a_case.cell->stack.plies > 1) {
+    findings.stack = stack_view(*a_case.cell);
+    folder.write("mesoscale/nesting.csv", nesting_csv(*findings.stack));
+  }
   const auto& s = findings.cell->summary;
   folder.log(fmt::format(
       "mesoscale: {:.4f} kg/m2, crimp {:.4f} %, gap closure {:.3f} deg, contact fraction {:.3f} % at 0.05 mm",
@@ -184,7 +190,7 @@ std::vector<SectionLine> report_section(const std::vector<mesoscale::Outline>& o
 /// The fabric as woven, and sheared to 30 degrees as at the side of a dome.
 std::vector<mesoscale::TouchedFace> touched_faces(const mesoscale::CellSpec& spec,
                                                   const mesoscale::FabricProperties& fabric) {
-  const mesoscale::FabricGeometry geometry = mesoscale::fabric_geometry(spec.weave, spec.state);
+  const mesoscale::FabricGeometry geometry = mesoscale::fabric_geometry(spec);
   const int tows = std::max(geometry.weave.warps, geometry.weave.wefts);
   std::vector<mesoscale::TouchedFace> faces;
   for (const double angle : {0.0, std::numbers::pi / 6.0})
@@ -206,6 +212,7 @@ ReportInput report_input(const Case& a_case, const Findings& findings) {
     // A stamping has enough to show.
     if (!findings.stamping) input.touched = touched_faces(*a_case.cell, findings.cell->fabric);
   }
+  input.stack = findings.stack;
   input.solid = findings.solid;
   if (findings.friction) {
     input.friction_test = findings.friction->test;
@@ -250,6 +257,7 @@ void write_findings(const Case& a_case, RunFolder& folder, const Findings& findi
   SummaryRecord record;
   if (findings.cell) record.cell = findings.cell->summary;
   if (findings.pictures) record.tow_bodies = findings.pictures->bodies;
+  if (findings.stack) record.stack = findings.stack->summary;
   if (findings.cell && a_case.stamping)
     record.contact_area_fraction_binder =
         findings.cell->fabric.contact.evaluate(mean_binder_pressure(*a_case.stamping), 0.0).fraction;
@@ -273,11 +281,20 @@ void print_cell(const mesoscale::CellSummary& s, const mesoscale::TowBodies& bod
              degrees * s.locking_angle);
   fmt::print("contact fraction     {:.2f} % of one face at 0.05 mm\n", 100.0 * s.contact_area_fraction);
   fmt::print("tow fibre fraction   {:.3f}\n", s.tow_fibre_volume_fraction);
+  fmt::print("thickness            {:.4f} mm: tows {:.3f}, glass {:.3f}, voids {:.3f} of the sheet\n",
+             1e3 * s.thickness, s.tow_share, s.glass_share, std::max(s.void_share, 0.0));
   fmt::print("overlap of tows      {:.3g} mm deep, {:.3g} mm^3 a repeat\n",
              1e3 * std::max(bodies.height_depth, 0.0), 1e9 * bodies.height_volume);
   fmt::print(
       "tows as bodies       {:.2g} % off the closed volume, {:.2g} % of it in two tows ({:.3g} mm voxels)\n",
       100.0 * bodies.volume_error, 100.0 * bodies.overlap_share, 1e3 * bodies.voxel);
+}
+
+void print_stack(const mesoscale::StackSummary& s) {
+  fmt::print(
+      "stack of {} plies     {:.3f} mm nested, {:.3f} mm apart; tows {:.3f}, glass {:.3f}, voids {:.3f}\n",
+      s.plies, 1e3 * s.thickness, 1e3 * s.apart, s.shares.tows, s.shares.glass,
+      std::max(s.shares.voids, 0.0));
 }
 
 void print_friction(const FrictionStage& stage) {
@@ -367,6 +384,7 @@ Case read_part(const RunOptions& options, Part part) {
 
 void print_findings(const Case& a_case, const Findings& findings, Part part, const fs::path& folder) {
   if (findings.cell && part != Part::friction) print_cell(findings.cell->summary, findings.pictures->bodies);
+  if (findings.stack && part != Part::friction) print_stack(findings.stack->summary);
   if (findings.solid && part != Part::friction) print_solid(*findings.solid);
   if (findings.friction && !findings.stamping) print_friction(*findings.friction);
   if (findings.friction_rig && !findings.stamping) print_friction_rig(*findings.friction_rig);

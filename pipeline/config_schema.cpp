@@ -70,6 +70,8 @@ std::vector<Key> weave_keys() {
       {.path = "weave.fibre_diameter", .type = KeyType::quantity, .unit = "um", .presence = defaulted,
        .default_text = "18.5 um", .range = "(0 um, 1000 um)", .stage = cell,
        .help = "Of one filament; recalled, not measured."},
+      {.path = "weave.warp_crimp", .type = KeyType::quantity, .unit = "%", .presence = optional, .range = "[0, 1]",
+       .stage = cell, .help = "Share of the crimp height that the warps take; absent: faces are flush."},
       {.path = "weave.section", .type = KeyType::choice, .presence = defaulted, .default_text = "lens",
        .choices = {"lens", "ellipse", "power_ellipse", "capped_lens"}, .stage = cell,
        .help = "Outline of a tow cut across. Lens and capped lens do not reach into the tows they cross; the others do."},
@@ -86,8 +88,21 @@ std::vector<Key> cell_keys() {
   const auto cell = Stage::cell;
   return {
       {.path = "cell.state", .type = KeyType::choice, .presence = defaulted, .default_text = "as_woven",
-       .choices = {"as_woven", "consolidated"}, .stage = cell,
-       .help = "as_woven: molten, at fabric thickness, for forming; consolidated: the solid part."},
+       .choices = {"as_woven", "compacted", "consolidated"}, .stage = cell,
+       .help = "as_woven: molten, at fabric thickness, for forming; compacted: pressed to a thickness; consolidated: no voids left."},
+      {.path = "cell.thickness", .type = KeyType::quantity, .unit = "mm", .presence = optional,
+       .range = "(0 mm, 40 mm)", .stage = cell, .used_when = "cell.state=compacted",
+       .help = "Of the compacted fabric; it, or cell.pressure."},
+      {.path = "cell.pressure", .type = KeyType::quantity, .unit = "kPa", .presence = optional,
+       .range = "(0 kPa, 1000000 kPa]", .stage = cell, .used_when = "cell.state=compacted",
+       .help = "Of flat plates on the as-woven fabric: its compaction law says how thick that leaves it."},
+      {.path = "cell.plies", .type = KeyType::integer, .presence = defaulted, .default_text = "1", .range = "[1, 8]",
+       .stage = cell, .help = "Equal plies on one another, nested: thickness and shares of the stack; with solid, its A, B and D."},
+      {.path = "cell.shift_warp", .type = KeyType::list, .unit = "mm", .presence = optional,
+       .range = "(-10000 mm, 10000 mm)", .stage = cell,
+       .help = "Where each ply lies along the warp, one number a ply, for instance [0 mm, 2.7 mm]; absent: on top of each other."},
+      {.path = "cell.shift_weft", .type = KeyType::list, .unit = "mm", .presence = optional,
+       .range = "(-10000 mm, 10000 mm)", .stage = cell, .help = "The same along the weft."},
   };
 }
 

@@ -15,6 +15,7 @@
 #include "macroscale/stamping.h"
 #include "mesoscale/cell_spec.h"
 #include "mesoscale/level_set.h"
+#include "mesoscale/nesting.h"
 #include "mesoscale/solid/solid_cell.h"
 
 /// The files of a run as text. Functions named after a file return its bytes; `write_file` puts them in
@@ -138,6 +139,7 @@ std::string contact_csv(const mesoscale::ContactArea& contact, std::span<const d
 struct SummaryRecord {
   std::optional<mesoscale::CellSummary> cell = {};
   std::optional<mesoscale::TowBodies> tow_bodies = {};
+  std::optional<mesoscale::StackSummary> stack = {};        ///< of several plies
   std::optional<double> contact_area_fraction_binder = {};  ///< phi under the binder's mean pressure [-]
   std::optional<macroscale::StampingSummary> stamping = {};
   std::optional<macroscale::GridError> grid_error = {};

@@ -31,9 +31,23 @@ Json cell_json(const mesoscale::CellSummary& cell, const std::optional<double>& 
            {"tow_solid_volume_fraction", cell.tow_solid_volume_fraction},
            {"contact_area_fraction", cell.contact_area_fraction},
            {"tow_section_area_mm2", 1e6 * cell.tow_section_area},
-           {"consolidated_thickness_mm", 1e3 * cell.consolidated_thickness}};
+           {"consolidated_thickness_mm", 1e3 * cell.consolidated_thickness},
+           {"thickness_mm", 1e3 * cell.thickness},
+           {"tow_share", cell.tow_share},
+           {"glass_share", cell.glass_share},
+           {"void_share", cell.void_share}};
   if (fraction_under_binder) out["contact_area_fraction_binder"] = *fraction_under_binder;
   return out;
+}
+
+Json stack_json(const mesoscale::StackSummary& stack) {
+  return {{"plies", stack.plies},
+          {"thickness_mm", 1e3 * stack.thickness},
+          {"thickness_apart_mm", 1e3 * stack.apart},
+          {"tow_swelling", stack.swelling},
+          {"tow_share", stack.shares.tows},
+          {"glass_share", stack.shares.glass},
+          {"void_share", stack.shares.voids}};
 }
 
 Json stamping_json(const macroscale::StampingSummary& summary) {
@@ -321,6 +335,7 @@ Json texts_json(const std::vector<std::pair<std::string, std::string>>& entries)
 std::string summary_json(const SummaryRecord& record) {
   Json root = Json::object();
   if (record.cell) root["mesoscale"] = cell_json(*record.cell, record.contact_area_fraction_binder);
+  if (record.cell && record.stack) root["mesoscale"]["stack"] = stack_json(*record.stack);
   if (record.cell && record.tow_bodies) {
     root["mesoscale"]["tow_volume_error"] = record.tow_bodies->volume_error;
     root["mesoscale"]["tow_overlap_share"] = record.tow_bodies->overlap_share;

@@ -81,6 +81,21 @@ std::string stiffness_json(const mesoscale::solid::SolidResult& result) {
   }
   if (result.plate && result.plate->held.size() == solid::held_causes)
     add_held(root, result.plate->all, result.plate->held, result.stack->held);
+  if (result.laminate) {
+    const solid::LaminateSolid& l = *result.laminate;
+    const auto parts = [](const solid::Matrix6& all) {
+      return Json{{"A_N_per_mm", rows_of(all.topLeftCorner<3, 3>(), 1e-3)},
+                  {"B_N", rows_of(all.topRightCorner<3, 3>(), 1.0)},
+                  {"D_N_mm", rows_of(all.bottomRightCorner<3, 3>(), 1e3)}};
+    };
+    root["laminate"] = {{"plies", l.plies},
+                        {"thickness_mm", 1e3 * l.thickness},
+                        {"tow_fibre_volume_fraction", l.fibre_fraction},
+                        {"tow_share", l.tow_share},
+                        {"converged", l.converged},
+                        {"together", parts(l.plate)},
+                        {"apart", parts(l.apart)}};
+  }
   root["iterations"] = iterations;
   root["voxels"] = {result.voxels[0], result.voxels[1], result.voxels[2]};
   for (const solid::ShearedSolid& sheared : result.sheared) root["sheared"].push_back(sheared_json(sheared));

@@ -110,6 +110,10 @@ std::vector<Condition> cell_facts(const mesoscale::CellSummary& cell) {
       {"Glass and resin in the tow, by volume", percent(cell.tow_solid_volume_fraction, 3)},
       {"Contact fraction of one face at 0.05 mm depth", percent(cell.contact_area_fraction, 3)},
       {"Tow section", significant(1e6 * cell.tow_section_area, 4) + " mm²"},
+      {"Thickness", significant(1e3 * cell.thickness, 4) + " mm"},
+      {"Of the sheet: tows, glass, voids",
+       fmt::format("{}, {}, {}", percent(cell.tow_share, 3), percent(cell.glass_share, 3),
+                   percent(std::max(cell.void_share, 0.0), 3))},
       {"Consolidated thickness", significant(1e3 * cell.consolidated_thickness, 3) + " mm"}};
 }
 
@@ -158,7 +162,7 @@ std::string solid_part(const ReportInput& input) {
                        : "How stiff the cell is in each direction of its plane.";
   return pair(figure(stiffness_chart(*input.solid), caption),
               "<div>\n" + facts_table(solid_facts(*input.solid)) + "</div>\n") +
-         stiffness_tables(*input.solid) + sheared_solid(input.solid->sheared);
+         stiffness_tables(*input.solid) + laminate_table(*input.solid) + sheared_solid(input.solid->sheared);
 }
 
 std::string signed_percent(const std::optional<double>& share) {
@@ -304,6 +308,7 @@ std::string report_html(const ReportInput& input) {
   out += section("Forces and motion", forces(input));
   out += section("Is the answer sound?", soundness(input));
   out += section("The weave", weave(input));
+  if (input.stack) out += section("Plies on one another", stack_section(*input.stack));
   // A stamping has enough to show; its weave has a report of its own.
   if (input.fabric && !input.stamping)
     out += section("Shear tests as the laws predict them", coupon_section(*input.fabric));

@@ -13,6 +13,7 @@
 #include "mesoscale/touched_face.h"
 #include "pipeline/outputs.h"
 #include "pipeline/picture.h"
+#include "pipeline/stack_report.h"
 
 namespace heddle::pipeline {
 
@@ -37,6 +38,7 @@ struct ReportInput {
 
   std::optional<mesoscale::CellSummary> cell = {};
   std::optional<mesoscale::FabricProperties> fabric = {};
+  std::optional<StackView> stack = {};  ///< of several plies
   std::optional<mesoscale::solid::SolidResult> solid = {};
   HeightField height = {};
   std::optional<mesoscale::TowBodies> tow_bodies = {};

@@ -256,10 +256,42 @@ std::string stiffness_tables(const solid::SolidResult& s) {
   return out;
 }
 
+std::string laminate_table(const solid::SolidResult& s) {
+  if (!s.laminate) return "";
+  const solid::LaminateSolid& l = *s.laminate;
+  std::string out = fmt::format(
+      "<h3>A laminate of {} plies, {} mm thick</h3>\n<div class=\"scroll\"><table>\n<tr><th></th>", l.plies,
+      significant(1e3 * l.thickness, 4));
+  for (const char* head : {"A11<br>N/mm", "A22<br>N/mm", "A12<br>N/mm", "A66<br>N/mm", "B11<br>N",
+                           "D11<br>N mm", "D22<br>N mm", "D12<br>N mm", "D66<br>N mm"})
+    out += fmt::format("<th class=\"number\">{}</th>", head);
+  out += "</tr>\n";
+  for (const auto& [name, all] :
+       {std::pair{"consolidated together", &l.plate}, {"lone plies, classical lamination", &l.apart}}) {
+    out += fmt::format("<tr><td>{}</td>", name);
+    const double a = 1e-3 * all->topLeftCorner<3, 3>().norm(),
+                 d = 1e3 * all->bottomRightCorner<3, 3>().norm();
+    for (const auto& [i, j, factor, scale] : {std::tuple{0, 0, 1e-3, a},
+                                              {1, 1, 1e-3, a},
+                                              {0, 1, 1e-3, a},
+                                              {2, 2, 1e-3, a},
+                                              {0, 3, 1.0, std::sqrt(a * d)},
+                                              {3, 3, 1e3, d},
+                                              {4, 4, 1e3, d},
+                                              {3, 4, 1e3, d},
+                                              {5, 5, 1e3, d}})
+      out += fmt::format("<td class=\"number\">{}</td>", entry(factor * (*all)(i, j), scale));
+    out += "</tr>\n";
+  }
+  return out + "</table></div>\n";
+}
+
 std::vector<Verdict> solid_verdicts(const solid::SolidResult& s) {
   std::vector<Verdict> out;
   if (s.plate) add_verdict(out, s.plate->solver, s.plate->checks, "solid ply");
   if (s.stack) add_verdict(out, s.stack->solver, s.stack->checks, s.plate ? "stack of plies" : "solid cell");
+  if (s.laminate && !s.laminate->converged)
+    out.push_back({Tone::fails, "The stiffness of the laminate is not converged."});
   const auto found = imbalances(s);
   for (const solid::BalancePair& pair : found)
     out.push_back(

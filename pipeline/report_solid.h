@@ -17,6 +17,9 @@ Canvas stiffness_chart(const mesoscale::solid::SolidResult& solid);
 Canvas sheared_stiffness_chart(const std::vector<mesoscale::solid::ShearedSolid>& rows);
 Canvas sheared_thermal_chart(const std::vector<mesoscale::solid::ShearedSolid>& rows);
 
+/// A laminate of several plies, beside what lone plies would make; empty without one.
+std::string laminate_table(const mesoscale::solid::SolidResult& s);
+
 /// The same numbers and more as tables of HTML, a row an angle.
 std::string sheared_table(const std::vector<mesoscale::solid::ShearedSolid>& rows);
 

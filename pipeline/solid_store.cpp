@@ -101,6 +101,14 @@ std::string bytes_of(const solid::SolidResult& result, const std::string& key) {
     write_matrix(file, "/stack/reuss", result.stack->reuss);
     write_vectors(file, "/stack/held", result.stack->held);
   }
+  if (result.laminate) {
+    const solid::LaminateSolid& l = *result.laminate;
+    file.write("/laminate/numbers", std::vector<double>{static_cast<double>(l.plies), l.thickness, l.swelling,
+                                                        l.fibre_fraction, l.tow_share});
+    file.write("/laminate/converged", l.converged ? 1 : 0);
+    write_matrix(file, "/laminate/plate", l.plate);
+    write_matrix(file, "/laminate/apart", l.apart);
+  }
   file.write("/sheared/count", static_cast<int>(result.sheared.size()));
   for (std::size_t k = 0; k < result.sheared.size(); ++k) {
     const solid::ShearedSolid& s = result.sheared[k];
@@ -146,6 +154,19 @@ solid::SolidResult read_solid_result(const Hdf5Reader& file) {
     read_matrix(file, "/stack/voigt", stack.voigt);
     read_matrix(file, "/stack/reuss", stack.reuss);
     stack.held = read_vectors(file, "/stack/held");
+  }
+  if (file.has("/laminate")) {
+    solid::LaminateSolid& l = result.laminate.emplace();
+    const std::vector<double> numbers = file.doubles("/laminate/numbers");
+    if (numbers.size() != 5) throw Hdf5Error("/laminate/numbers has another size");
+    l.plies = static_cast<int>(numbers[0]);
+    l.thickness = numbers[1];
+    l.swelling = numbers[2];
+    l.fibre_fraction = numbers[3];
+    l.tow_share = numbers[4];
+    l.converged = file.integer("/laminate/converged") != 0;
+    read_matrix(file, "/laminate/plate", l.plate);
+    read_matrix(file, "/laminate/apart", l.apart);
   }
   result.sheared.resize(static_cast<std::size_t>(file.integer("/sheared/count")));
   for (std::size_t k = 0; k < result.sheared.size(); ++k) {

@@ -19,13 +19,13 @@ namespace {
 // A struct of numbers is kept as one row: the same list of members writes and reads it. The sizes tell when a
 // member was added and must be named here too.
 
-static_assert(sizeof(mesoscale::CellSummary) == 12 * sizeof(double));
+static_assert(sizeof(mesoscale::CellSummary) == 16 * sizeof(double));
 template <class Summary>
 auto members(Summary& s) {
   return std::tie(s.areal_density, s.crimp[0], s.crimp[1], s.crimp_angle[0], s.crimp_angle[1],
                   s.gap_closure_angle, s.locking_angle, s.tow_fibre_volume_fraction,
                   s.tow_solid_volume_fraction, s.contact_area_fraction, s.tow_section_area,
-                  s.consolidated_thickness);
+                  s.consolidated_thickness, s.thickness, s.tow_share, s.glass_share, s.void_share);
 }
 
 static_assert(sizeof(mesoscale::TowBodies) == 6 * sizeof(double));

@@ -9,7 +9,7 @@
 #include "friction/hersey.h"
 #include "friction/test_design.h"
 #include "macroscale/tool_set.h"
-#include "mesoscale/cell.h"
+#include "mesoscale/state.h"
 
 namespace heddle::pipeline {
 
@@ -52,8 +52,11 @@ double exponent_between(const friction::AreaFunction& area,
 // The contact area of the fabric that was pulled: that of this case if both are the same weave.
 mesoscale::FabricProperties pulled_fabric(const Case& a_case, const mesoscale::FabricProperties* fabric) {
   mesoscale::CellSpec cell = *a_case.cell;
-  if (fabric && cell.weave == a_case.friction->calibration_weave) return *fabric;
+  const bool compacted = cell.state == mesoscale::CellState::compacted;
+  if (fabric && !compacted && cell.weave == a_case.friction->calibration_weave) return *fabric;
   cell.weave = a_case.friction->calibration_weave;
+  // Somebody's thickness or pressure is not that of the fabric in the rig.
+  if (compacted) cell.state = mesoscale::CellState::as_woven;
   return mesoscale::analyse(cell).fabric;
 }
 
@@ -194,7 +197,7 @@ FrictionStage run_friction_stage(const Case& a_case, const mesoscale::FabricProp
 }
 
 WeavePictures weave_pictures(const mesoscale::CellSpec& spec) {
-  const auto cell = mesoscale::unit_cell(mesoscale::fabric_geometry(spec.weave, spec.state), 0.0);
+  const auto cell = mesoscale::unit_cell(mesoscale::fabric_geometry(spec), 0.0);
   WeavePictures pictures;
   // Large repeats take what a repeat of eight does, so that no picture outgrows a screen.
   const int tows = std::max(cell.weave.warps, cell.weave.wefts);

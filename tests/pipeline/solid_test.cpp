@@ -50,6 +50,7 @@ solid::SolidResult sample() {
   solid::SolidSpec spec;
   spec.grid = {.per_pitch = 6, .layers = 4};
   spec.shear_angles = {0.0, 0.5};
+  spec.stack = {2, {0.0, 2.5e-3}, {}};
   return solid::analyse(mesoscale::WeaveSpec{}, spec);
 }
 
@@ -134,6 +135,8 @@ TEST_CASE("a solid result comes back from the cache's bytes bit for bit", "[pipe
   CHECK(after.sheared.size() == 2);
   CHECK(pipeline::sheared_csv(after.sheared) == pipeline::sheared_csv(before.sheared));
   CHECK(after.plate->upper == before.plate->upper);
+  CHECK(after.laminate->plate == before.laminate->plate);
+  CHECK(pipeline::laminate_table(after) == pipeline::laminate_table(before));
   CHECK(after.balance.size() == before.balance.size());
 }
 

@@ -31,6 +31,10 @@ nlohmann::json summary_of(const fs::path& file, std::vector<std::string> setting
   auto summary = nlohmann::json::parse(read_text_file(output / "summary.json"))["mesoscale"];
   summary["report"] = read_text_file(output / "report.html");
   summary["resolved"] = read_text_file(output / "resolved.yaml");
+  if (fs::exists(output / "mesoscale/nesting.csv"))
+    summary["nesting"] = read_text_file(output / "mesoscale/nesting.csv");
+  if (fs::exists(output / "mesoscale/stiffness.json"))
+    summary["stiffness"] = nlohmann::json::parse(read_text_file(output / "mesoscale/stiffness.json"));
   fs::remove_all(output);
   return summary;
 }
@@ -66,4 +70,35 @@ TEST_CASE("tows that overlap are stated in summary and report, with depth and vo
         std::string::npos);
   CHECK(summary["report"].get<std::string>().find("and cuts into them by up to") != std::string::npos);
   CHECK(summary["resolved"].get<std::string>().find("section: ellipse") != std::string::npos);
+}
+
+TEST_CASE("a stack of plies is stated in summary, table, report and stiffness", "[pipeline][weaves][stack]") {
+  const auto summary = summary_of(folder / "stack.yaml", {"solid={per_pitch: 8, layers: 6}"});
+  CHECK(summary["stack"]["plies"] == 2);
+  CHECK(summary["stack"]["thickness_mm"].get<double>() == Approx(2.5152).epsilon(1e-4));
+  CHECK(summary["stack"]["thickness_apart_mm"].get<double>() == Approx(3.0));
+  CHECK(summary["stack"]["void_share"].get<double>() < summary["void_share"].get<double>());
+  const std::string table = summary["nesting"];
+  CHECK(table.starts_with("shift_warp_mm,shift_weft_mm,thickness_mm,glass_share\n0,0,3"));
+  CHECK(summary["report"].get<std::string>().find("Plies on one another") != std::string::npos);
+  CHECK(summary["report"].get<std::string>().find("A laminate of 2 plies") != std::string::npos);
+  const auto& laminate = summary["stiffness"]["laminate"];
+  CHECK(laminate["converged"] == true);
+  CHECK(laminate["thickness_mm"].get<double>() ==
+        Approx(2.0 * summary["consolidated_thickness_mm"].get<double>()));
+  CHECK(laminate["together"]["A_N_per_mm"][0][0] > laminate["apart"]["A_N_per_mm"][0][0]);
+  // A lone ply says nothing of stacks.
+  CHECK_FALSE(summary_of(folder / "twill.yaml", {}).contains("stack"));
+}
+
+TEST_CASE("the compacted state goes from a file to the summary, by thickness and by pressure",
+          "[pipeline][weaves][state]") {
+  const fs::path file = fs::path(heddle::test::source_dir) / "configs/unit_cell.yaml";
+  const auto thin = summary_of(file, {"cell={state: compacted, thickness: 0.8 mm}"});
+  CHECK(thin["thickness_mm"].get<double>() == Approx(0.8));
+  CHECK(thin["void_share"].get<double>() == Approx(1.0 - 0.4757 / 0.8).epsilon(1e-3));
+  CHECK(thin["report"].get<std::string>().find("free of stress at its thickness") != std::string::npos);
+  const auto pressed = summary_of(file, {"cell={state: compacted, pressure: 10 kPa}"});
+  CHECK(pressed["thickness_mm"] < 1.5);
+  CHECK(pressed["thickness_mm"] > 0.8);
 }
