@@ -432,7 +432,8 @@ std::vector<Key> study_keys() {
 std::vector<Key> artefact_keys() {
   return {
       {.path = "artefact.mass_scaling", .type = KeyType::quantity, .presence = defaulted, .default_text = "1",
-       .range = "(0, )", .stage = Stage::stamping, .help = "Factor on areal density. Not physical; 1 is off."},
+       .range = "[1e-6, 1e9]", .stage = Stage::stamping,
+       .help = "Factor on areal density. Not physical; 1 is off. Without mass nothing holds a sheet that folds."},
       {.path = "artefact.stabilisation", .type = KeyType::quantity, .unit = "N s/m^3", .presence = defaulted,
        .default_text = "0 N s/m^3", .range = "[0 N s/m^3, )", .stage = Stage::stamping,
        .help = "Damping of every node per area. Not physical; 0 is off."},
