@@ -11,6 +11,7 @@
 #include "pipeline/discover_keys.h"
 #include "pipeline/friction_keys.h"
 #include "pipeline/solid_keys.h"
+#include "pipeline/stamping_study_keys.h"
 #include "pipeline/study_keys.h"
 
 namespace heddle::pipeline {
@@ -465,6 +466,7 @@ std::vector<Key> all_keys() {
   append(keys, artefact_keys());
   append(keys, study_keys());
   append(keys, cell_study_keys());
+  append(keys, stamping_study_keys());
   append(keys, calibrate_keys());
   append(keys, discover_keys());
   return keys;
