@@ -53,13 +53,13 @@ Canvas force_chart_of(const Runs& runs, const std::string& label,
 
 Canvas binder_chart(const Runs& runs, const BinderLine& line) {
   LineChart chart = half_chart("Peak punch force over binder force, and the straight line through the points",
-                               {"Binder force", "N"}, {"Peak punch force", "N"}, 84.0);
+                               {"Binder force", "kN"}, {"Peak punch force", "N"}, 84.0);
   chart.y.low = 0.0;
-  Series points{"", {}, {}, true}, straight{"straight line", {}, {}};
+  Series points{"", {}, {}, true}, straight{"line", {}, {}};
   for (const StudiedStamping* run : runs) {
-    points.x.push_back(run->binder_force);
+    points.x.push_back(1e-3 * run->binder_force);
     points.y.push_back(run->peak()->force);
-    straight.x.push_back(run->binder_force);
+    straight.x.push_back(1e-3 * run->binder_force);
     straight.y.push_back(line.intercept + line.slope * run->binder_force);
   }
   chart.series = {std::move(straight), std::move(points)};
@@ -159,15 +159,17 @@ std::string speed_section(const StampingStudyFindings& findings) {
                       findings, "Peak punch force over speed for each model", {"Peak force", "N"},
                       [](const StudiedStep& s) { return s.force; }, false),
                   "The same in newtons."));
-  body +=
-      pair(figure(over_speed_chart(
-                      findings, "Largest shear angle at peak force over speed for each model",
-                      {"Shear angle", "°"}, [](const StudiedStep& s) { return degrees * s.shear; }, false),
-                  "Largest shear angle when the force is largest."),
-           figure(over_speed_chart(
-                      findings, "Largest tow strain at peak force over speed for each model",
-                      {"Tow strain", "%"}, [](const StudiedStep& s) { return 100.0 * s.tow_strain; }, false),
-                  "Largest tow strain when the force is largest."));
+  body += pair(
+      figure(over_speed_chart(
+                 findings,
+                 "Largest shear angle at peak force over speed for each model, in per cent of that at V",
+                 {"Shear angle, of that at V", "%"}, [](const StudiedStep& s) { return s.shear; }, true),
+             "Largest shear angle when the force is largest, in per cent of the same model at V."),
+      figure(over_speed_chart(
+                 findings,
+                 "Largest tow strain at peak force over speed for each model, in per cent of that at V",
+                 {"Tow strain, of that at V", "%"}, [](const StudiedStep& s) { return s.tow_strain; }, true),
+             "Largest tow strain when the force is largest, in per cent of the same model at V."));
   std::string curves;
   int drawn = 0;
   for (const StudyModel& model : findings.spec.models) {

@@ -130,6 +130,13 @@ TEST_CASE("a study of stampings runs every model at every speed once, and again 
        {"Binder force", "Punch speed", "Models against each other", "fabric.shear_rate=off"})
     CHECK_THAT(page, Catch::Contains(part));
 
+  // Each stamping is a run like any other, indicators included.
+  const fs::path one = scratch / "study/cases/given_650N_1V";
+  CHECK_THAT(pipeline::read_file(one / "summary.json"), Catch::Contains("\"wrinkle_height_max_mm\""));
+  CHECK_THAT(pipeline::read_file(one / "macroscale/blank_0005.vtu"),
+             Catch::Contains("\"tow_load_warp_weft\""));
+  CHECK(fs::exists(one / "macroscale/indicators.csv"));
+
   const auto first = heddle::test::contents(scratch / "study");
   REQUIRE(pipeline::study_case(options) == pipeline::exit_done);
   CHECK(heddle::test::first_difference(first, heddle::test::contents(scratch / "study")) == "");
