@@ -28,6 +28,8 @@ class Findings {
   Problems problems_;
 };
 
+constexpr double fastest_punch = 1000.0;  ///< [m/s]; c = sqrt(E / rho) of a tow is 2 to 5 km/s
+
 std::string mm(double metres) {
   return fmt::format("{:g} mm", 1e3 * metres);
 }
@@ -169,6 +171,13 @@ Problems check(const StampingSpec& spec) {
   f.demand(process.speed_scale > 0.0, "process.punch.speed_scale.range"_rule, "process.punch.speed_scale",
            fmt::format("{:g}", process.speed_scale), "must be > 0",
            "1 is the paper's profile, 0.5 half its speed.");
+  const double speed = process.stroke / process.time * process.speed_scale;
+  f.demand(
+      !(process.time > 0.0 && process.speed_scale > 0.0) || speed <= fastest_punch,
+      "process.punch.time.speed"_rule, "process.punch.time", fmt::format("{:g} s", process.time),
+      fmt::format("must leave the punch slower than {:g} m/s; it moves at {:.4g} m/s", fastest_punch, speed),
+      "Sound in the tows is not much faster; 0.16 m/s in the shipped case.",
+      {"process.punch.stroke", "process.punch.speed_scale"});
   f.demand(process.steps >= 1, "process.steps.range"_rule, "process.steps", fmt::format("{}", process.steps),
            "must be >= 1", "100 steps of equal stroke in the shipped case.");
   f.demand(process.binder_force > 0.0, "process.binder_force.range"_rule, "process.binder_force",

@@ -149,6 +149,20 @@ Problems check_passage(const StampingSpec& spec, Role other, double thickness) {
                1e3 * nearest.stroke, 1e3 * nearest.at.x(), 1e3 * nearest.at.y(), 1e3 * nearest.at.z())}};
 }
 
+// A hemisphere by its number carries on as a cylinder; a drawn punch ends where its file ends.
+Problems check_punch_height(const StampingSpec& spec) {
+  const TriangleMesh* punch = mesh_of(spec, Role::punch);
+  if (!punch) return {};
+  const Heights z = heights(*punch);
+  if (spec.process.stroke < z.high - z.low) return {};
+  return {
+      {"tools.punch.height"_rule, "tools.punch", "",
+       fmt::format("is {:.4g} mm high, less than the stroke of {:.4g} mm", 1e3 * (z.high - z.low),
+                   1e3 * spec.process.stroke),
+       "Its upper end would sink below the fabric: shorten process.punch.stroke, or draw the punch higher "
+       "and check its length unit."}};
+}
+
 Problems check_hold(const StampingSpec& spec) {
   if (!spec.binder.file || binder_area(spec) > 0.0) return {};
   return {{"tools.binder.hold"_rule, "tools.binder", "", "has no flat lower face over the blank",
@@ -178,7 +192,8 @@ Box reach_of_fabric(const StampingSpec& spec, Role role, const TriangleMesh& mes
 
 Problems check_tools(const StampingSpec& spec, double thickness) {
   Problems problems = check_passage(spec, Role::die, thickness);
-  for (const Problems& more : {check_passage(spec, Role::binder, thickness), check_hold(spec)})
+  for (const Problems& more :
+       {check_passage(spec, Role::binder, thickness), check_punch_height(spec), check_hold(spec)})
     problems.insert(problems.end(), more.begin(), more.end());
   return problems;
 }

@@ -11,6 +11,7 @@
 #include "pipeline/case_rules.h"
 #include "pipeline/case_settings.h"
 #include "pipeline/outputs.h"
+#include "pipeline/stamping_study_keys.h"
 
 namespace heddle::pipeline {
 namespace {
@@ -182,6 +183,10 @@ std::vector<std::string> stage_lines(const Case& a_case) {
     lines.push_back(fmt::format("study: by `heddle study` alone, {} weaves at {} shear angles",
                                 mesoscale::study::points(*a_case.cell, *a_case.study).size(),
                                 a_case.study->shear_angles.size()));
+  if (const auto study = stamping_study_of(a_case.settings))
+    lines.push_back(
+        fmt::format("stamping study: by `heddle study` alone, {} models, {} speeds, {} binder forces",
+                    study->models.size(), study->speed_scales.size(), study->binder_forces.size()));
   if (a_case.discover) lines.push_back("discover: by `heddle discover` alone, in its --data");
   if (a_case.calibrate) lines.push_back("calibrate: by `heddle calibrate` alone, to its --data");
   return lines;

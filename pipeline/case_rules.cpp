@@ -9,6 +9,7 @@
 #include "friction/combinations.h"
 #include "friction/test_design.h"
 #include "pipeline/case_settings.h"
+#include "pipeline/stamping_study_keys.h"
 
 namespace heddle::pipeline {
 
@@ -250,6 +251,7 @@ Problems check_between_keys(const Case& a_case, const ReadConfig& config) {
     append(problems, check_distinct(a_case.orientation_study->blanks, "orientation_study.blanks"));
     append(problems, check_distinct(a_case.orientation_study->friction, "orientation_study.friction"));
   }
+  if (const auto study = stamping_study_of(a_case.settings)) append(problems, check_stamping_study(*study));
   if (a_case.study && !any_below(config.failed, {"weave", "cell", "study"}))
     append(problems, check_study(*a_case.study, *a_case.cell));
   if (a_case.cell && a_case.stamping) append(problems, check_clearance(*a_case.cell, *a_case.stamping));

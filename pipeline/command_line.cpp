@@ -153,9 +153,9 @@ int dispatch(const std::vector<std::string>& arguments, const Commands& commands
       ->add_option("--data", calibrate_options.data, "Table of coupons (CSV)")
       ->required()
       ->check(CLI::ExistingFile);
-  add_run(program, "study", "What changes of the weave do to the unit cell", study_options)
+  add_run(program, "study", "What changes do to the unit cell, or to the stamped part", study_options)
       ->footer(
-          "Weaves that the cache holds are not computed again: the same command goes on after an "
+          "What the cache holds is not computed again: the same command goes on after an "
           "interruption.");
   add_discover(program, discover_options);
   add_export(program, export_options);

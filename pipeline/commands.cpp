@@ -15,6 +15,7 @@
 #include "pipeline/export_vtu.h"
 #include "pipeline/friction_rig_stage.h"
 #include "pipeline/grid_error_stage.h"
+#include "pipeline/indicator_outputs.h"
 #include "pipeline/interrupt.h"
 #include "pipeline/orientation.h"
 #include "pipeline/report.h"
@@ -46,6 +47,7 @@ struct Findings {
   std::optional<FrictionRigStage> friction_rig;
   std::optional<macroscale::StampingResult> stamping;
   std::optional<macroscale::GridError> grid_error;
+  std::vector<macroscale::LargestIndicator> indicators;  ///< of the last state
 };
 
 std::vector<double> contact_pressures() {
@@ -133,6 +135,11 @@ void run_stamping(const Case& a_case, RunFolder& folder, const Cache& cache, Fin
   if (!a_case.stamping) return;
   findings.stamping = run_stamping_stage(*a_case.stamping, findings.cell->fabric, findings.friction->model,
                                          folder, cache, std::move(options));
+  const macroscale::BlankState& blank = findings.stamping->final_state;
+  findings.indicators = macroscale::largest(macroscale::indicators(blank, findings.cell->fabric), blank);
+  if (findings.indicators.empty()) return;  // the binder never closed
+  folder.write("macroscale/indicators.csv", indicators_csv(findings.indicators));
+  folder.log(indicator_line(findings.indicators));
 }
 
 // The companion run on the coarser grid, of a stamping that came to its end.
@@ -233,6 +240,9 @@ ReportInput report_input(const Case& a_case, const Findings& findings) {
     input.blank = findings.stamping->final_state;
     input.grid_error = findings.grid_error;
     input.artefact = a_case.stamping->artefact;
+    input.warnings = indicator_warnings(
+        findings.indicators,
+        indicator_limits(*a_case.stamping, findings.cell->fabric, findings.stamping->summary.spacing));
   }
   input.notes.insert(input.notes.end(), a_case.notes.begin(), a_case.notes.end());
   return input;
@@ -268,7 +278,7 @@ void write_findings(const Case& a_case, RunFolder& folder, const Findings& findi
     if (record.failure)
       record.advice = macroscale::advice_for(*record.failure, *a_case.stamping, *record.stamping);
   }
-  folder.write("summary.json", summary_json(record));
+  folder.write("summary.json", summary_json(record, findings.indicators));
   folder.write("report.html", report_html(report_input(a_case, findings)));
   folder.close(a_case, stage_hashes(a_case));
 }

@@ -137,7 +137,8 @@ class ConfigReader {
   void find_stages() {
     std::set<Stage>& stages = config_.settings.stages;
     stages.insert(Stage::always);
-    if (given("blank") || given("tools") || given("process")) stages.insert(Stage::stamping);
+    if (given("blank") || given("tools") || given("process") || given("stamping_study"))
+      stages.insert(Stage::stamping);
     if (given("orientation_study")) {
       stages.insert(Stage::orientation_study);
       stages.insert(Stage::stamping);

@@ -11,6 +11,7 @@
 #include "pipeline/discover_keys.h"
 #include "pipeline/friction_keys.h"
 #include "pipeline/solid_keys.h"
+#include "pipeline/stamping_study_keys.h"
 #include "pipeline/study_keys.h"
 
 namespace heddle::pipeline {
@@ -447,7 +448,8 @@ std::vector<Key> study_keys() {
 std::vector<Key> artefact_keys() {
   return {
       {.path = "artefact.mass_scaling", .type = KeyType::quantity, .presence = defaulted, .default_text = "1",
-       .range = "(0, )", .stage = Stage::stamping, .help = "Factor on areal density. Not physical; 1 is off."},
+       .range = "[1e-6, 1e9]", .stage = Stage::stamping,
+       .help = "Factor on areal density. Not physical; 1 is off. Without mass nothing holds a sheet that folds."},
       {.path = "artefact.stabilisation", .type = KeyType::quantity, .unit = "N s/m^3", .presence = defaulted,
        .default_text = "0 N s/m^3", .range = "[0 N s/m^3, )", .stage = Stage::stamping,
        .help = "Damping of every node per area. Not physical; 0 is off."},
@@ -479,6 +481,7 @@ std::vector<Key> all_keys() {
   append(keys, artefact_keys());
   append(keys, study_keys());
   append(keys, cell_study_keys());
+  append(keys, stamping_study_keys());
   append(keys, calibrate_keys());
   append(keys, discover_keys());
   return keys;

@@ -216,15 +216,17 @@ std::array<double, 3> position_in(const macroscale::BlankState& blank, const std
   return x;
 }
 
+void add_nodal(QuadMesh& mesh, const macroscale::BlankState& blank, DataArray values) {
+  // A quantity the run did not track is empty, and left out.
+  if (values.values.empty()) return;
+  add_piece_values(values, blank);
+  mesh.point_data.push_back(std::move(values));
+}
+
 QuadMesh mesh_of(const macroscale::BlankState& blank) {
   QuadMesh mesh{blank.position, {}, {}, {}};
   add_cells(mesh, blank);
-  const auto add = [&](DataArray array) {
-    // A quantity the run did not track is empty, and left out.
-    if (array.values.empty()) return;
-    add_piece_values(array, blank);
-    mesh.point_data.push_back(std::move(array));
-  };
+  const auto add = [&](DataArray array) { add_nodal(mesh, blank, std::move(array)); };
   DataArray angle{"shear_angle_deg", 1, blank.shear_angle};
   for (double& value : angle.values) value *= 180.0 / std::numbers::pi;
   add(std::move(angle));

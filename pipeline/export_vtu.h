@@ -38,6 +38,9 @@ std::array<double, 3> position_in(const macroscale::BlankState& blank, const std
 /// friction. Cells that the outline cuts are there as their pieces, on points of their own.
 QuadMesh mesh_of(const macroscale::BlankState& blank);
 
+/// Adds values of the blank's nodes, one after the other with their components, to a mesh that mesh_of made.
+void add_nodal(QuadMesh& mesh, const macroscale::BlankState& blank, DataArray values);
+
 struct SeriesFrame {
   double time = 0.0;  ///< [s]
   std::string file;   ///< relative to the .pvd file

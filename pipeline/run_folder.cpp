@@ -13,6 +13,7 @@
 #include "pipeline/grid_error_stage.h"
 #include "pipeline/stage_keys.h"
 #include "pipeline/stamping_record.h"
+#include "pipeline/stamping_study_keys.h"
 
 namespace heddle::pipeline {
 
@@ -74,11 +75,13 @@ RunFolder::RunFolder(const Case& a_case, fs::path folder, bool force, Entry entr
     throw InputError({{"output.folder.create"_rule, "-o", path_.string(),
                        "cannot be created: " + error.code().message(), "Choose another folder with -o."}});
   }
+  // Cases of a list know by themselves whether they still hold (case_list.h).
+  const bool lists_cases = stamping_study_of(a_case.settings).has_value();
   // The manifest says that a run is complete: it goes first and comes last.
   for (const char* name :
        {"manifest.json", "mesoscale", "friction", "inputs", "cases", "table.csv", "calibration",
         "calibration.json", "patched.yaml", "summary.json", "report.html", "log.txt"})
-    fs::remove_all(path_ / name);
+    if (!lists_cases || name != std::string_view("cases")) fs::remove_all(path_ / name);
   if (fs::exists(path_ / "macroscale"))
     for (const auto& file : fs::directory_iterator(path_ / "macroscale"))
       if (entry != Entry::resume || !stays_for_resume(file.path().filename())) fs::remove_all(file.path());

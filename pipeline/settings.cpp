@@ -142,8 +142,12 @@ std::string resolved_value(const Setting& setting) {
         rows += c == '/' ? "], [" : (rows.empty() || rows.back() == '[' ? "" : ", ") + std::string(1, c);
       return "[[" + rows + "]]";
     }
-    case KeyType::names:
-      return fmt::format("[{}]", fmt::join(setting.names, ", "));
+    case KeyType::names: {
+      std::string names;
+      for (const std::string& name : setting.names)
+        names += (names.empty() ? "" : ", ") + quoted_where_needed(name);
+      return "[" + names + "]";
+    }
     case KeyType::rows: {
       std::string rows;
       for (auto row = setting.many.begin(); row != setting.many.end(); row += key.columns)

@@ -84,18 +84,23 @@ std::string name_of(ChainStage stage) {
 }
 
 const std::vector<std::string>& keys_without_effect() {
-  // A study lists runs; each has its own blank.orientation in its key.
-  static const std::vector<std::string> keys{"heddle", "name", "orientation_study.blanks",
-                                             "orientation_study.friction"};
+  // A study lists runs; each has what it changes in its own key.
+  static const std::vector<std::string> keys{"heddle",
+                                             "name",
+                                             "orientation_study.blanks",
+                                             "orientation_study.friction",
+                                             "stamping_study.binder_force",
+                                             "stamping_study.speed_scale",
+                                             "stamping_study.models"};
   return keys;
 }
 
 bool reads(ChainStage stage, const Key& key) {
+  const auto& idle = keys_without_effect();
+  if (std::find(idle.begin(), idle.end(), key.path) != idle.end()) return false;
   switch (key.stage) {
-    case Stage::always: {  // what every stage may read, as the melt
-      const auto& idle = keys_without_effect();
-      return std::find(idle.begin(), idle.end(), key.path) == idle.end();
-    }
+    case Stage::always:  // what every stage may read, as the melt
+      return true;
     case Stage::cell:
       return stage == ChainStage::mesoscale;
     case Stage::solid:

@@ -7,6 +7,7 @@
 
 #include "core/progress.h"
 #include "pipeline/export_vtu.h"
+#include "pipeline/indicator_outputs.h"
 
 namespace heddle::pipeline {
 
@@ -17,9 +18,11 @@ constexpr int frames = 20;  // of the blank, over the stroke
 // Everything written while the punch moves: what ends the run, it is there.
 class StampingFiles {
  public:
-  StampingFiles(RunFolder& folder, const Cache& cache, const StampingStageOptions& options, int steps)
+  StampingFiles(RunFolder& folder, const Cache& cache, const StampingStageOptions& options,
+                const mesoscale::FabricProperties& fabric, int steps)
       : folder_(folder),
         cache_(cache),
+        fabric_(fabric),
         interval_(options.checkpoint_interval),
         every_(std::max(1, steps / frames)),
         last_kept_(Progress::steady_seconds()) {
@@ -60,7 +63,7 @@ class StampingFiles {
   void add_frame(int step, macroscale::BlankState blank) {
     folder_.write("macroscale/history.csv", history_csv(history_));
     const std::string name = fmt::format("blank_{:04d}.vtu", step);
-    folder_.write("macroscale/" + name, vtu(mesh_of(blank)));
+    folder_.write("macroscale/" + name, vtu(mesh_with_indicators(blank, fabric_)));
     series_.push_back({blank.time, name});
     folder_.write("macroscale/blank.pvd", pvd(series_));
     record_.frames.push_back({step, std::move(blank)});
@@ -68,6 +71,7 @@ class StampingFiles {
 
   RunFolder& folder_;
   const Cache& cache_;
+  const mesoscale::FabricProperties& fabric_;
   double interval_;
   int every_;
   double last_kept_, cost_ = 0.0;  // [s]
@@ -84,8 +88,9 @@ QuadMesh mesh_of_failure(const macroscale::StampingFailure& failure) {
   return mesh;
 }
 
-void write_failure(const macroscale::StampingResult& result, RunFolder& folder) {
-  folder.write("macroscale/blank_last.vtu", vtu(mesh_of(result.final_state)));
+void write_failure(const macroscale::StampingResult& result, const mesoscale::FabricProperties& fabric,
+                   RunFolder& folder) {
+  folder.write("macroscale/blank_last.vtu", vtu(mesh_with_indicators(result.final_state, fabric)));
   folder.log("stamping stopped: " + result.summary.failure);
   if (!result.failure || result.failure->blank.position.empty()) return;
   try {
@@ -102,7 +107,7 @@ macroscale::StampingResult run_stamping_stage(const macroscale::StampingSpec& sp
                                               const friction::Model& friction, RunFolder& folder,
                                               const Cache& cache, StampingStageOptions options) {
   const int steps = spec.process.steps;
-  StampingFiles files(folder, cache, options, steps);
+  StampingFiles files(folder, cache, options, fabric, steps);
   std::optional<StampingRecord> from;
   const auto work = [&](bool& reused) {
     from = cache.find(options.inputs.key(), read_stamping_record);
@@ -137,7 +142,7 @@ macroscale::StampingResult run_stamping_stage(const macroscale::StampingSpec& sp
   };
   macroscale::StampingResult result = folder.stage("macroscale", work);
   folder.write("macroscale/history.csv", history_csv(result.history));
-  if (!result.summary.completed && !result.summary.stopped) write_failure(result, folder);
+  if (!result.summary.completed && !result.summary.stopped) write_failure(result, fabric, folder);
   return result;
 }
 

@@ -18,6 +18,7 @@
 #include "pipeline/painter.h"
 #include "pipeline/run_folder.h"
 #include "pipeline/stage_keys.h"
+#include "pipeline/stamping_study.h"
 
 namespace heddle::pipeline {
 
@@ -129,9 +130,15 @@ std::size_t cells_in(const Case& a_case) {
 
 Case read_study(const RunOptions& options) {
   Case a_case = read_case(options.file, options.assignments);
-  if (!a_case.study)
+  const bool of_stampings = stamping_study_of(a_case.settings).has_value();
+  if (!a_case.study && !of_stampings)
     throw InputError({{"study.missing"_rule, "study", "", "is missing, and this command needs it",
-                       "Add `study:`; configs/study_weave.yaml shows one.", options.file.string()}});
+                       "Add `study:` for unit cells, as configs/study_weave.yaml, or `stamping_study:`, as "
+                       "configs/studies/paper.yaml.",
+                       options.file.string()}});
+  if (a_case.study && of_stampings)
+    throw InputError({{"study.both"_rule, "stamping_study", "", "stands beside `study`",
+                       "One file holds one study: leave one of the two out.", options.file.string()}});
   return a_case;
 }
 
@@ -261,6 +268,7 @@ std::string sensitivities_csv(const CellStudyFindings& findings) {
 
 int study_case(const RunOptions& options) {
   const Case a_case = read_study(options);
+  if (!a_case.study) return study_stampings(options, a_case);
   std::optional<tbb::global_control> threads;
   if (options.threads > 0) threads.emplace(tbb::global_control::max_allowed_parallelism, options.threads);
   RunFolder folder(a_case, output_folder(options, a_case.name), options.force);

@@ -101,9 +101,11 @@ HerseyTable read_hersey_table(const std::string& path) {
     const std::string& cell = row.cells[at];
     double value = 0.0;
     const auto [end, error] = std::from_chars(cell.data(), cell.data() + cell.size(), value);
-    if (error != std::errc() || end != cell.data() + cell.size())
+    // from_chars takes "nan" and "inf" as numbers.
+    if (error != std::errc() || end != cell.data() + cell.size() || !std::isfinite(value))
       problems.push_back({"friction.hersey_table.number"_rule, table.header.cells[at], cell,
-                          "must be a number", "Correct the cell.", path, row.line});
+                          "must be a finite number", "Correct the cell, or leave its line out.", path,
+                          row.line});
     into.push_back(value);
   };
   if (problems.empty())

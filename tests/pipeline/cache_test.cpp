@@ -198,8 +198,9 @@ TEST_CASE("every key of the configuration is in the key of a stage, but for thos
     }
     CHECK(read != (std::find(idle.begin(), idle.end(), key.path) != idle.end()));
   }
-  CHECK(idle ==
-        std::vector<std::string>{"heddle", "name", "orientation_study.blanks", "orientation_study.friction"});
+  CHECK(idle == std::vector<std::string>{"heddle", "name", "orientation_study.blanks",
+                                         "orientation_study.friction", "stamping_study.binder_force",
+                                         "stamping_study.speed_scale", "stamping_study.models"});
 }
 
 TEST_CASE("the key of a stage moves with what it reads and with nothing else", "[pipeline][cache]") {

@@ -1,0 +1,40 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "macroscale/indicators.h"
+#include "pipeline/export_vtu.h"
+#include "pipeline/outputs.h"
+
+namespace heddle::pipeline {
+
+/// The blank as mesh_of has it, with its indicators: tow_load_warp_weft, gap_opening_warp_weft_mm,
+/// wrinkle_height_mm, thickening.
+QuadMesh mesh_with_indicators(const macroscale::BlankState& blank, const mesoscale::FabricProperties& fabric);
+
+/// summary.json with the block "indicators" below "macroscale", a number each.
+std::string summary_json(const SummaryRecord& record,
+                         const std::vector<macroscale::LargestIndicator>& indicators);
+
+/// indicators.csv: name, value, unit, and where the largest is [mm].
+std::string indicators_csv(const std::vector<macroscale::LargestIndicator>& indicators);
+
+/// From where on an indicator is a warning.
+struct IndicatorLimits {
+  double tow_load = 1.0;          ///< torn
+  double tow_compression = 0.01;  ///< a tow shortens by this only by buckling
+  double wrinkle_height = 0.0;    ///< what the grid leaves by itself [m] (macroscale::wrinkle_floor)
+  double gap_opening = 0.0;       ///< a tenth of the pitch [m]
+};
+IndicatorLimits indicator_limits(const macroscale::StampingSpec& spec,
+                                 const mesoscale::FabricProperties& fabric,
+                                 const std::array<double, 2>& spacing);
+
+/// A sentence for each indicator beyond its limit, for report and terminal.
+std::vector<std::string> indicator_warnings(const std::vector<macroscale::LargestIndicator>& indicators,
+                                            const IndicatorLimits& limits);
+/// One sentence with all of them, for the log.
+std::string indicator_line(const std::vector<macroscale::LargestIndicator>& indicators);
+
+}  // namespace heddle::pipeline

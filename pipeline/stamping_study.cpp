@@ -1,0 +1,380 @@
+#include "pipeline/stamping_study.h"
+
+#include <algorithm>
+#include <cmath>
+#include <iostream>
+#include <numbers>
+
+#include <fmt/format.h>
+
+#include "core/csv.h"
+#include "core/hdf5_file.h"
+#include "core/units.h"
+#include "pipeline/painter.h"
+#include "pipeline/run_folder.h"
+#include "pipeline/stage_keys.h"
+#include "pipeline/stages.h"
+
+namespace heddle::pipeline {
+
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr double degrees = 180.0 / std::numbers::pi;
+const std::string given = "given";
+
+// ---- which stampings
+
+std::string number_in_id(double value) {
+  std::string text = shortest(value);
+  std::replace(text.begin(), text.end(), '.', 'p');
+  std::erase(text, '+');
+  return text;
+}
+
+struct PlannedStamping {
+  StudiedStamping of;
+  std::vector<std::string> assignments;
+};
+
+// Every model at every speed, then the case as given at every binder force; none twice.
+std::vector<PlannedStamping> plan(const StampingStudySpec& spec, const Case& a_case,
+                                  const std::vector<std::string>& assignments) {
+  const macroscale::ProcessSpec& process = a_case.stamping->process;
+  std::vector<PlannedStamping> all;
+  const auto add = [&](const StudyModel& model, double binder_force, double speed_scale) {
+    const std::string id =
+        fmt::format("{}_{}N_{}V", model.name, number_in_id(binder_force), number_in_id(speed_scale));
+    if (std::any_of(all.begin(), all.end(), [&](const PlannedStamping& p) { return p.of.id == id; })) return;
+    PlannedStamping planned{{id, model.name, binder_force, speed_scale}, assignments};
+    planned.assignments.insert(planned.assignments.end(), model.assignments.begin(), model.assignments.end());
+    planned.assignments.push_back("process.binder_force=" + write_quantity(binder_force, "N"));
+    planned.assignments.push_back("process.punch.speed_scale=" + write_quantity(speed_scale, ""));
+    all.push_back(std::move(planned));
+  };
+  const std::vector<double> own_speed{process.speed_scale};
+  for (const StudyModel& model : spec.models)
+    for (const double scale : spec.speed_scales.empty() ? own_speed : spec.speed_scales)
+      add(model, process.binder_force, scale);
+  for (const double force : spec.binder_forces) add(spec.models.front(), force, process.speed_scale);
+  return all;
+}
+
+// Before anything runs: a wrong key of the last model must not cost the stampings of the others.
+void demand_readable(const RunOptions& options, const std::vector<PlannedStamping>& all) {
+  Problems problems;
+  std::string last;
+  for (const PlannedStamping& planned : all) {
+    if (planned.of.model == last) continue;  // its keys are the same at every speed
+    last = planned.of.model;
+    try {
+      read_case(options.file, planned.assignments);
+    } catch (const InputError& error) {
+      for (Problem problem : error.problems()) {
+        if (problem.file.starts_with("--set")) problem.file = "stamping_study.models, " + planned.of.model;
+        problems.push_back(std::move(problem));
+      }
+    }
+  }
+  if (!problems.empty()) throw InputError(std::move(problems));
+}
+
+// ---- what they came to
+
+std::vector<StudiedStep> steps_in(const fs::path& file) {
+  std::vector<StudiedStep> steps;
+  if (!fs::exists(file)) return steps;
+  const CsvTable table = read_csv(file);
+  const auto column = [&](const std::string& name) {
+    const auto found = std::find(table.header.cells.begin(), table.header.cells.end(), name);
+    if (found == table.header.cells.end())
+      throw std::logic_error("history.csv has no column " + name);  // we wrote it
+    return static_cast<std::size_t>(found - table.header.cells.begin());
+  };
+  const std::size_t stroke = column("punch_displacement_mm"), force = column("punch_force_N"),
+                    shear = column("shear_angle_max_deg"), strain = column("tow_strain_max"),
+                    draw_in = column("draw_in_max_mm"), work = column("work_punch_J"),
+                    rate = column("dissipation_shear_rate_J");
+  const std::array<std::size_t, 3> friction{column("friction_punch_J"), column("friction_die_J"),
+                                            column("friction_binder_J")};
+  for (const CsvRow& row : table.rows) {
+    const auto value = [&](std::size_t k) { return std::stod(row.cells[k]); };
+    StudiedStep step{1e-3 * value(stroke),
+                     value(force),
+                     value(shear) / degrees,
+                     value(strain),
+                     1e-3 * value(draw_in),
+                     value(work),
+                     0.0,
+                     value(rate)};
+    for (const std::size_t k : friction) step.friction += value(k);
+    steps.push_back(step);
+  }
+  return steps;
+}
+
+double result_of(const CaseRecord& record, const std::string& name) {
+  for (const auto& [key, value] : record.results)
+    if (key == name) return value;
+  return 0.0;
+}
+
+void take(StudiedStamping& stamping, const CaseRecord& record, const fs::path& folder) {
+  stamping.status = record.status;
+  stamping.message = record.message;
+  if (record.status == CaseStatus::bad_input) return;
+  stamping.steps = steps_in(folder / "cases" / stamping.id / "macroscale/history.csv");
+  stamping.energy_residual_max = result_of(record, "macroscale.energy_residual_max");
+  stamping.outside_calibration = result_of(record, "macroscale.friction_work_outside_calibration");
+}
+
+std::vector<const StudiedStamping*> done(const StampingStudyFindings& findings, const std::string& model) {
+  std::vector<const StudiedStamping*> found;
+  for (const StudiedStamping& stamping : findings.stampings)
+    if (stamping.model == model && stamping.status == CaseStatus::done && stamping.peak())
+      found.push_back(&stamping);
+  return found;
+}
+
+// ---- files and lines
+
+struct Column {
+  std::string name;
+  double (*value)(const StudiedStamping&, const StudiedStep&);
+};
+
+const std::vector<Column>& columns() {
+  using S = StudiedStamping;
+  using T = StudiedStep;
+  static const std::vector<Column> all{
+      {"peak_punch_force_N", [](const S&, const T& t) { return t.force; }},
+      {"stroke_at_peak_mm", [](const S&, const T& t) { return 1e3 * t.stroke; }},
+      {"shear_angle_max_deg", [](const S&, const T& t) { return degrees * t.shear; }},
+      {"tow_strain_max", [](const S&, const T& t) { return t.tow_strain; }},
+      {"draw_in_max_mm", [](const S&, const T& t) { return 1e3 * t.draw_in; }},
+      {"work_punch_J", [](const S&, const T& t) { return t.work; }},
+      {"work_friction_J", [](const S&, const T& t) { return t.friction; }},
+      {"work_shear_rate_J", [](const S&, const T& t) { return t.shear_rate; }},
+      {"energy_residual_max", [](const S& s, const T&) { return s.energy_residual_max; }},
+      {"friction_work_outside_calibration", [](const S& s, const T&) { return s.outside_calibration; }}};
+  return all;
+}
+
+const char* word_of(CaseStatus status) {
+  switch (status) {
+    case CaseStatus::done:
+      return "done";
+    case CaseStatus::failed:
+      return "failed";
+    case CaseStatus::bad_input:
+      return "bad_input";
+    case CaseStatus::interrupted:
+      break;
+  }
+  return "interrupted";
+}
+
+std::string note_on_calibration(const StampingStudyFindings& findings) {
+  double largest = 0.0;
+  for (const StudiedStamping& stamping : findings.stampings)
+    largest = std::max(largest, stamping.outside_calibration);
+  return fmt::format(
+      "Up to {:.0f} % of the friction work is done outside the box of the calibration, where the law is "
+      "carried on along its last slope.",
+      100.0 * largest);
+}
+
+void print(const StampingStudyFindings& findings) {
+  fmt::print("{:<16}{:>10}{:>8}{:>11}{:>11}{:>12}{:>11}{:>11}\n", "model", "binder N", "speed", "peak N",
+             "shear deg", "tow strain %", "friction J", "rate J");
+  for (const StudiedStamping& s : findings.stampings) {
+    const StudiedStep* peak = s.peak();
+    if (!peak) continue;
+    fmt::print("{:<16}{:>10.6g}{:>8.4g}{:>11.2f}{:>11.2f}{:>12.4f}{:>11.3f}{:>11.3f}{}\n", s.model,
+               s.binder_force, s.speed_scale, peak->force, degrees * peak->shear, 100.0 * peak->tow_strain,
+               peak->friction, peak->shear_rate,
+               s.status == CaseStatus::done ? "" : std::string("  ") + word_of(s.status));
+  }
+  for (const SpeedSignature& s : speed_signatures(findings)) {
+    const auto ratio = s.ratio();
+    fmt::print("{:<16} {:g}V to {:g}V {:+.2f} %, to {:g}V {:+.2f} %, signature {}\n", s.model, 0.5 * s.speed,
+               s.speed, 100.0 * s.rise_low(), 2.0 * s.speed, 100.0 * s.rise_high(),
+               ratio ? fmt::format("{:.2f}", *ratio) : "below noise");
+  }
+  if (const auto line = binder_line(findings))
+    fmt::print("binder force     peak = {:.1f} N + {:.4f} of the force, R2 {:.5f}, farthest point {:.1f} %\n",
+               line->intercept, line->slope, line->r_squared, 100.0 * line->largest_miss);
+}
+
+}  // namespace
+
+const StudiedStep* StudiedStamping::peak() const {
+  const auto found =
+      std::max_element(steps.begin(), steps.end(),
+                       [](const StudiedStep& a, const StudiedStep& b) { return a.force < b.force; });
+  return found == steps.end() ? nullptr : &*found;
+}
+
+std::vector<const StudiedStamping*> over_speed(const StampingStudyFindings& findings,
+                                               const std::string& model) {
+  auto found = done(findings, model);
+  std::erase_if(found, [&](const StudiedStamping* s) { return s->binder_force != findings.binder_force; });
+  std::stable_sort(found.begin(), found.end(),
+                   [](const auto* a, const auto* b) { return a->speed_scale < b->speed_scale; });
+  return found;
+}
+
+std::vector<const StudiedStamping*> over_binder_force(const StampingStudyFindings& findings) {
+  auto found = done(findings, given);
+  std::erase_if(found, [&](const StudiedStamping* s) { return s->speed_scale != findings.speed_scale; });
+  std::stable_sort(found.begin(), found.end(),
+                   [](const auto* a, const auto* b) { return a->binder_force < b->binder_force; });
+  return found;
+}
+
+std::optional<double> SpeedSignature::ratio() const {
+  if (std::abs(rise_low()) < noise || std::abs(rise_high()) < noise) return std::nullopt;
+  return (force[2] - force[1]) / (force[1] - force[0]);
+}
+
+std::vector<SpeedSignature> speed_signatures(const StampingStudyFindings& findings) {
+  std::vector<SpeedSignature> signatures;
+  for (const StudyModel& model : findings.spec.models) {
+    const auto runs = over_speed(findings, model.name);
+    const auto at = [&](double scale) -> const StudiedStamping* {
+      for (const StudiedStamping* run : runs)
+        if (std::abs(run->speed_scale / scale - 1.0) < 1e-9) return run;
+      return nullptr;
+    };
+    for (const StudiedStamping* middle : runs) {
+      const StudiedStamping *slow = at(0.5 * middle->speed_scale), *fast = at(2.0 * middle->speed_scale);
+      if (slow && fast)
+        signatures.push_back({model.name,
+                              middle->speed_scale,
+                              {slow->peak()->force, middle->peak()->force, fast->peak()->force}});
+    }
+  }
+  return signatures;
+}
+
+std::optional<BinderLine> binder_line(const StampingStudyFindings& findings) {
+  const auto runs = over_binder_force(findings);
+  if (runs.size() < 3) return std::nullopt;
+  const double n = static_cast<double>(runs.size());
+  double x = 0.0, y = 0.0, xx = 0.0, xy = 0.0, yy = 0.0;
+  for (const auto* run : runs) x += run->binder_force / n, y += run->peak()->force / n;
+  for (const auto* run : runs) {
+    const double dx = run->binder_force - x, dy = run->peak()->force - y;
+    xx += dx * dx, xy += dx * dy, yy += dy * dy;
+  }
+  BinderLine line;
+  line.slope = xy / xx;
+  line.intercept = y - line.slope * x;
+  if (yy > 0.0) line.r_squared = xy * xy / (xx * yy);
+  for (const auto* run : runs) {
+    const double force = run->peak()->force;
+    line.largest_miss = std::max(line.largest_miss,
+                                 std::abs(line.intercept + line.slope * run->binder_force - force) / force);
+  }
+  return line;
+}
+
+std::string stamping_table_csv(const StampingStudyFindings& findings) {
+  std::string out = "case,model,binder_force_N,speed_scale,status";
+  for (const Column& column : columns()) out += "," + column.name;
+  out += "\n";
+  for (const StudiedStamping& s : findings.stampings) {
+    out += fmt::format("{},{},{},{},{}", s.id, s.model, shortest(s.binder_force), shortest(s.speed_scale),
+                       word_of(s.status));
+    const StudiedStep* peak = s.peak();
+    for (const Column& column : columns()) out += "," + (peak ? shortest(column.value(s, *peak)) : "");
+    out += "\n";
+  }
+  return out;
+}
+
+std::string stamping_table_h5(const StampingStudyFindings& findings) {
+  Hdf5Writer file;
+  std::string ids, models, statuses;
+  std::vector<double> force, scale;
+  for (const StudiedStamping& s : findings.stampings) {
+    ids += s.id + "\n";
+    models += s.model + "\n";
+    statuses += std::string(word_of(s.status)) + "\n";
+    force.push_back(s.binder_force);
+    scale.push_back(s.speed_scale);
+  }
+  file.write("/keys/case", ids);
+  file.write("/keys/model", models);
+  file.write("/keys/binder_force_N", std::span<const double>(force));
+  file.write("/keys/speed_scale", std::span<const double>(scale));
+  file.write("/results/status", statuses);
+  for (const Column& column : columns()) {
+    std::vector<double> values;
+    for (const StudiedStamping& s : findings.stampings) {
+      const StudiedStep* peak = s.peak();
+      values.push_back(peak ? column.value(s, *peak) : std::nan(""));
+    }
+    file.write("/results/" + column.name, std::span<const double>(values));
+  }
+  return file.finish();
+}
+
+int study_stampings(const RunOptions& options, const Case& a_case) {
+  const StampingStudySpec spec = stamping_study_of(a_case.settings).value();
+  const std::vector<PlannedStamping> all = plan(spec, a_case, options.assignments);
+  demand_readable(options, all);
+  const macroscale::ProcessSpec& process = a_case.stamping->process;
+  RunFolder folder(a_case, output_folder(options, a_case.name), options.force);
+  StampingStudyFindings findings{a_case.name,
+                                 fmt::format("{} stampings of a {} blank, {:g} mm deep.", all.size(),
+                                             blank_in_words(a_case.stamping->blank), 1e3 * process.stroke),
+                                 spec,
+                                 process.binder_force,
+                                 process.speed_scale,
+                                 {},
+                                 {}};
+  std::vector<ListedCase> list;
+  for (const PlannedStamping& planned : all)
+    list.push_back({planned.of.id, options.file, planned.assignments});
+  const std::vector<CaseRecord> records = folder.stage("study", [&](bool& reused) {
+    auto found = run_case_list(list, {.folder = folder.path(),
+                                      .cache = options.cache,
+                                      .threads = options.threads,
+                                      .checkpoint_interval = options.checkpoint_interval,
+                                      .quiet = options.quiet});
+    reused = std::all_of(found.begin(), found.end(), [](const CaseRecord& r) { return r.run_before; });
+    return found;
+  });
+  for (std::size_t k = 0; k < records.size(); ++k) {
+    findings.stampings.push_back(all[k].of);
+    take(findings.stampings.back(), records[k], folder.path());
+  }
+  if (records.back().status == CaseStatus::interrupted) {
+    folder.write_log();
+    std::cerr << fmt::format("heddle: interrupted in stamping {} of {}; the same command goes on there\n",
+                             records.size(), all.size());
+    return exit_failed;
+  }
+  findings.notes.push_back(note_on_calibration(findings));
+  findings.notes.insert(findings.notes.end(), a_case.notes.begin(), a_case.notes.end());
+  folder.write("table.csv", stamping_table_csv(findings));
+  folder.write("table.h5", stamping_table_h5(findings));
+  folder.write("report.html", stamping_study_html(findings));
+  folder.close(a_case, {{"study", case_hash(a_case)}});
+  if (options.print) {
+    print(findings);
+    fmt::print("results          {}\n", folder.path().string());
+  }
+  int code = exit_done;
+  for (const StudiedStamping& s : findings.stampings)
+    if (s.status != CaseStatus::done) {
+      std::cerr << fmt::format("heddle: {} {}: {}\n  cases/{} holds what it reached.\n", s.id,
+                               word_of(s.status), s.message, s.id);
+      code = exit_failed;
+    }
+  return code;
+}
+
+}  // namespace heddle::pipeline
