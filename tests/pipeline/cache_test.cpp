@@ -225,6 +225,7 @@ TEST_CASE("the key of a stage moves with what it reads and with nothing else", "
   CHECK(moved("weave.gap=750 um") == "....");  // the same number
   CHECK(moved("weave.gap=0.7500000000000001 mm") == "XXXX");
   CHECK(moved("resin.power_index=0.39") == "XXXX");
+  CHECK(moved("cell={state: compacted, thickness: 1 mm}") == "XXXX");
   CHECK(moved("friction.form=linear") == ".XXX");
   CHECK(moved("effects.tool_temperature_shift.reference=86 degC") == ".XXX");
   CHECK(moved("process.binder_force=651 N") == "..XX");
@@ -239,7 +240,7 @@ TEST_CASE("the key of a stage moves with what it reads and with nothing else", "
   for (const pipeline::Key& key : pipeline::schema()) {
     const std::string other = other_value(key, a_case.settings);
     if (other.empty() || key.path == "friction.law" || key.path == "effects.tool_temperature_shift.slope" ||
-        key.path == "blank.shape")  // choices that ask for other keys beside them
+        key.path == "blank.shape" || key.path == "cell.state")  // choices that ask for other keys beside them
       continue;
     INFO(key.path << "=" << other);
     CHECK(moved(key.path + "=" + other).back() == 'X');
