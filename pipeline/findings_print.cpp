@@ -20,8 +20,10 @@ void print_cell(const mesoscale::CellSummary& s, const mesoscale::TowBodies& bod
              degrees * s.locking_angle);
   fmt::print("contact fraction     {:.2f} % of one face at 0.05 mm\n", 100.0 * s.contact_area_fraction);
   fmt::print("tow fibre fraction   {:.3f}\n", s.tow_fibre_volume_fraction);
-  fmt::print("thickness            {:.4f} mm: tows {:.3f}, glass {:.3f}, voids {:.3f} of the sheet\n",
-             1e3 * s.thickness, s.tow_share, s.glass_share, std::max(s.void_share, 0.0));
+  fmt::print(
+      "thickness            {:.4f} mm: tows with their voids {:.3f}, glass {:.3f}, voids {:.3f} of the "
+      "sheet\n",
+      1e3 * s.thickness, s.tow_share, s.glass_share, std::max(s.void_share, 0.0));
   fmt::print("overlap of tows      {:.3g} mm deep, {:.3g} mm^3 a repeat\n",
              1e3 * std::max(bodies.height_depth, 0.0), 1e9 * bodies.height_volume);
   fmt::print(
@@ -31,7 +33,8 @@ void print_cell(const mesoscale::CellSummary& s, const mesoscale::TowBodies& bod
 
 void print_stack(const mesoscale::StackSummary& s) {
   fmt::print(
-      "stack of {} plies     {:.3f} mm nested, {:.3f} mm apart; tows {:.3f}, glass {:.3f}, voids {:.3f}\n",
+      "stack of {} plies     {:.3f} mm nested, {:.3f} mm apart; tows with their voids {:.3f}, glass {:.3f}, "
+      "voids {:.3f}\n",
       s.plies, 1e3 * s.thickness, 1e3 * s.apart, s.shares.tows, s.shares.glass,
       std::max(s.shares.voids, 0.0));
 }
