@@ -116,17 +116,28 @@ FabricGeometry compacted_geometry(const WeaveSpec& weave, double thickness) {
 
 Section section_of(const WeaveSpec& weave, std::size_t direction) {
   const TowSpec tow = weave.tow(direction);
-  switch (weave.section) {
-    case SectionShape::ellipse:
-      return PowerEllipseSection{tow.width, tow.thickness, 1.0};
-    case SectionShape::power_ellipse:
-      return PowerEllipseSection{tow.width, tow.thickness, weave.section_power};
-    case SectionShape::capped_lens:
-      return capped_lens(tow.width, tow.thickness, weave.section_cap);
-    case SectionShape::lens:
-      break;
+  const auto shaped = [&](SectionShape shape, double power, double cap, double thickness) -> HalfSection {
+    switch (shape) {
+      case SectionShape::ellipse:
+        return PowerEllipseSection{tow.width, thickness, 1.0};
+      case SectionShape::power_ellipse:
+        return PowerEllipseSection{tow.width, thickness, power};
+      case SectionShape::capped_lens:
+        return capped_lens(tow.width, thickness, cap);
+      case SectionShape::lens:
+      case SectionShape::hybrid:
+        break;
+    }
+    return LensSection{tow.width, thickness};
+  };
+  if (weave.section != SectionShape::hybrid) {
+    const HalfSection both = shaped(weave.section, weave.section_power, weave.section_cap, tow.thickness);
+    return {both, both};
   }
-  return LensSection{tow.width, tow.thickness};
+  const auto half = [&](const HalfSpec& spec, double share) {
+    return shaped(spec.section, spec.section_power, spec.section_cap, 2.0 * share * tow.thickness);
+  };
+  return {half(weave.upper, weave.upper_share), half(weave.lower, 1.0 - weave.upper_share)};
 }
 
 ArcPath path_over(const Section& own, const Section& under, double pitch, double excess) {
@@ -185,7 +196,7 @@ CrossingGeometry sheared(const CrossingGeometry& unsheared, double shear_angle) 
 
 double UnitCell::crown() const {
   double highest = 0.0;
-  for (const Tow& t : tow) highest = std::max(highest, 0.5 * height(t.path) + half_height(t.section, 0.0));
+  for (const Tow& t : tow) highest = std::max(highest, 0.5 * height(t.path) + 0.5 * thickness(t.section));
   return highest;
 }
 
@@ -252,16 +263,16 @@ Column column(const UnitCell& cell, double xi, double eta) {
   const double across_warp = eta - warp * warps.spacing, across_weft = xi - weft * wefts.spacing;
   Column found;
   if (std::abs(across_warp) < 0.5 * width(warps.section)) {
-    const double centre = warp_centre(cell, warp, xi), half = half_height(warps.section, across_warp);
+    const double centre = warp_centre(cell, warp, xi);
     found.warp = true;
-    found.warp_top = centre + half;
-    found.warp_bottom = centre - half;
+    found.warp_top = centre + upper_face(warps.section, across_warp);
+    found.warp_bottom = centre + lower_face(warps.section, across_warp);
   }
   if (std::abs(across_weft) < 0.5 * width(wefts.section)) {
-    const double centre = weft_centre(cell, weft, eta), half = half_height(wefts.section, across_weft);
+    const double centre = weft_centre(cell, weft, eta);
     found.weft = true;
-    found.weft_top = centre + half;
-    found.weft_bottom = centre - half;
+    found.weft_top = centre + upper_face(wefts.section, across_weft);
+    found.weft_bottom = centre + lower_face(wefts.section, across_weft);
   }
   return found;
 }

@@ -191,11 +191,23 @@ void check_own_ranges(Problems& problems, const WeaveSpec& w) {
 }
 
 void check_section(Problems& problems, const WeaveSpec& w) {
+  constexpr const char* of_the_power = "1 is the ellipse, smaller is fuller, 2 is nearly the lens.";
+  constexpr const char* of_the_cap = "1 is the lens; 0.6 leaves two fifths of the width to the flanks.";
   const Bound bounds[] = {
       {"weave.section_power", w.section_power, "", 1.0, within(0.2, w.section_power, 4.0),
-       "must lie between 0.2 and 4", "1 is the ellipse, smaller is fuller, 2 is nearly the lens."},
+       "must lie between 0.2 and 4", of_the_power},
       {"weave.section_cap", w.section_cap, "", 1.0, within(0.1, w.section_cap, 1.0),
-       "must lie between 0.1 and 1", "1 is the lens; 0.6 leaves two fifths of the width to the flanks."},
+       "must lie between 0.1 and 1", of_the_cap},
+      {"weave.upper_share", w.upper_share, "%", 100.0, within(0.1, w.upper_share, 0.9),
+       "must lie between 10 % and 90 %", "50 % gives both halves of the section the same thickness."},
+      {"weave.upper.section_power", w.upper.section_power, "", 1.0, within(0.2, w.upper.section_power, 4.0),
+       "must lie between 0.2 and 4", of_the_power},
+      {"weave.upper.section_cap", w.upper.section_cap, "", 1.0, within(0.1, w.upper.section_cap, 1.0),
+       "must lie between 0.1 and 1", of_the_cap},
+      {"weave.lower.section_power", w.lower.section_power, "", 1.0, within(0.2, w.lower.section_power, 4.0),
+       "must lie between 0.2 and 4", of_the_power},
+      {"weave.lower.section_cap", w.lower.section_cap, "", 1.0, within(0.1, w.lower.section_cap, 1.0),
+       "must lie between 0.1 and 1", of_the_cap},
   };
   for (const Bound& bound : bounds) add_if_broken(problems, bound);
 }
@@ -303,6 +315,13 @@ const std::vector<std::string> keys_of_the_packing{"weave.pattern",
                                                    "weave.section",
                                                    "weave.section_power",
                                                    "weave.section_cap",
+                                                   "weave.upper_share",
+                                                   "weave.upper.section",
+                                                   "weave.upper.section_power",
+                                                   "weave.upper.section_cap",
+                                                   "weave.lower.section",
+                                                   "weave.lower.section_power",
+                                                   "weave.lower.section_cap",
                                                    "weave.warp.tow_width",
                                                    "weave.warp.gap",
                                                    "weave.warp.tow_thickness",

@@ -29,7 +29,16 @@ struct OwnTow {
   bool operator==(const OwnTow&) const = default;
 };
 
-enum class SectionShape { lens, ellipse, power_ellipse, capped_lens };
+enum class SectionShape { lens, ellipse, power_ellipse, capped_lens, hybrid };
+
+/// One half of a hybrid section: any shape but hybrid.
+struct HalfSpec {
+  SectionShape section = SectionShape::lens;
+  double section_power = 0.5;  ///< n of the power ellipse [-]
+  double section_cap = 0.6;    ///< arc of the capped lens over its width [-]
+
+  bool operator==(const HalfSpec&) const = default;
+};
 
 /// What the user says of the weave (paper, Table 1). SI units.
 struct WeaveSpec {
@@ -47,6 +56,8 @@ struct WeaveSpec {
   SectionShape section = SectionShape::lens;
   double section_power = 0.5;   ///< n of the power ellipse [-]
   double section_cap = 0.6;     ///< arc of the capped lens over its width [-]
+  HalfSpec upper{}, lower{};    ///< of the hybrid section
+  double upper_share = 0.5;     ///< upper half's thickness over the tow's [-]
   std::array<OwnTow, 2> own{};  ///< {warp, weft}
   /// h_warp / (h_warp + h_weft), of the crimp heights [-]; faces are flush unless it is given.
   std::optional<double> warp_crimp{};

@@ -33,11 +33,11 @@ struct Quarter {
     return floats ? 0.0 : tow.path.drop(u);
   }
   double upper(double u, double v) const {
-    return path_drop(upper_tow(), upper_floats, u) + drop(upper_tow().section, v) + sunk[top];
+    return path_drop(upper_tow(), upper_floats, u) + drop(upper_tow().section, Face::upper, v) + sunk[top];
   }
   double lower(double u, double v) const {
-    return lower_tow().path.height - path_drop(lower_tow(), lower_floats, v) + drop(lower_tow().section, u) +
-           sunk[1 - top];
+    return lower_tow().path.height - path_drop(lower_tow(), lower_floats, v) +
+           drop(lower_tow().section, Face::upper, u) + sunk[1 - top];
   }
 
   struct Touched {
@@ -50,12 +50,13 @@ struct Quarter {
 
 Quarter::Touched Quarter::touched(double u) const {
   const double left = depth - sunk[top] - path_drop(upper_tow(), upper_floats, u);
-  double end =
-      left > 0.0 ? std::min(reach(upper_tow().section, left), 0.5 * width(upper_tow().section)) : 0.0;
+  double end = left > 0.0
+                   ? std::min(reach(upper_tow().section, Face::upper, left), 0.5 * width(upper_tow().section))
+                   : 0.0;
   double start = breadth();
   const TowGeometry& below = lower_tow();
   if (u < 0.5 * width(below.section) && !lower_floats) {
-    const double must_fall = below.path.height + drop(below.section, u) + sunk[1 - top] - depth;
+    const double must_fall = below.path.height + drop(below.section, Face::upper, u) + sunk[1 - top] - depth;
     if (must_fall < 0.5 * below.path.height) start = below.path.reach(must_fall);
   }
   if (end > start) {
@@ -79,7 +80,7 @@ std::array<double, 6> Quarter::kinks() const {
   const double below_crown = depth - sunk[top];
   const double fallen = upper_floats || below_crown >= 0.5 * over.height ? edge : over.reach(below_crown);
   const double above_lower = depth - sunk[1 - top] - 0.5 * under.height;
-  const double lower_end = lower_floats ? 0.0 : reach(lower_tow().section, above_lower);
+  const double lower_end = lower_floats ? 0.0 : reach(lower_tow().section, Face::upper, above_lower);
   std::array<double, 6> u{0.0,       fallen, std::min(over.wrap(), edge), 0.5 * width(lower_tow().section),
                           lower_end, edge};
   std::sort(u.begin(), u.end());
@@ -231,7 +232,7 @@ PlateContact plate_contact(const FabricGeometry& fabric, const CompactionLaw& la
 double shallow_touched_fraction(const CrossingGeometry& crossing, double depth) {
   double radii = 0.0;
   for (const TowGeometry& tow : crossing.tow)
-    radii += 0.5 * std::sqrt(crown_radius(tow.section) * tow.path.radius);
+    radii += 0.5 * std::sqrt(crown_radius(tow.section, Face::upper) * tow.path.radius);
   return 2.0 * std::numbers::pi * depth * radii / crossing.area();
 }
 

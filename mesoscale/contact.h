@@ -10,8 +10,9 @@
 
 namespace heddle::mesoscale {
 
-/// A rigid flat plate pressed by d below the crowns of one face. Above a quarter crossing (u along the upper
-/// tow a, v across it, up to half a pitch of the lower tow b and of a) the faces lie below the crown plane by
+/// A rigid flat plate pressed by d below the crowns of the upper face. Above a quarter crossing (u along the
+/// upper tow a, v across it, up to half a pitch of the lower tow b and of a) the faces lie below the crown
+/// plane by
 ///     upper tow: D_a(u) + L_a(v), v <= w_a/2      lower tow: h_b - D_b(v) + L_b(u), u <= w_b/2
 /// with L the section drop and D the path drop of a step that changes sides (0 where the tow floats); where
 /// faces are not flush, both further down by what the crowns of a and b lie below the highest. So for

@@ -18,11 +18,12 @@ TowSqueeze squeeze_of(const CrossingGeometry& unsheared, double shear_angle, con
 }  // namespace
 
 CrossoverContact::CrossoverContact(const CrossingGeometry& unsheared, double shear_angle,
-                                   const CompactionLaw& law, const FloatShares& floats)
+                                   const CompactionLaw& law, const QuarterShares& quarters)
     : squeeze_(squeeze_of(unsheared, shear_angle, law, 0), squeeze_of(unsheared, shear_angle, law, 1),
                unsheared.balanced()),
       shear_angle_(shear_angle),
-      floats_(floats),
+      kinds_(quarter_kinds(quarters,
+                           faces_alike(unsheared.tow[0].section) && faces_alike(unsheared.tow[1].section))),
       line_{line_along(unsheared, shear_angle, 0), line_along(unsheared, shear_angle, 1)} {}
 
 CrossoverContact::Line CrossoverContact::line_along(const CrossingGeometry& unsheared, double shear_angle,
@@ -39,12 +40,14 @@ CrossoverContact::Line CrossoverContact::line_along(const CrossingGeometry& unsh
     for (int panel = 0; panel < 2; ++panel)
       for (std::size_t q = 0; q < 6; ++q) {
         const double u = from + 0.5 * (to - from) * (panel + 0.5 * (1.0 + GaussSix::point[q]));
-        const double fallen = drop(other.section, u);
         line.place.push_back(stretch * u);
         line.weight.push_back(stretch * 0.25 * (to - from) * GaussSix::weight[q]);
-        // Rounding can leave -1e-19 where the faces coincide.
-        line.gap[0].push_back(std::max(fallen - path.drop(u), 0.0));
-        line.gap[1].push_back(fallen);
+        for (const std::size_t top : {std::size_t{0}, std::size_t{1}}) {
+          const double fallen = drop(other.section, top == tow ? Face::upper : Face::lower, u);
+          // Rounding can leave -1e-19 where the faces coincide.
+          line.gap[top][0].push_back(std::max(fallen - path.drop(u), 0.0));
+          line.gap[top][1].push_back(fallen);
+        }
       }
   };
   add_panels(0.0, wrap);
@@ -55,15 +58,12 @@ CrossoverContact::Line CrossoverContact::line_along(const CrossingGeometry& unsh
 // add(share of the kind of quarter, weight, squeeze, {i, j}) over all kinds and places.
 template <class Add>
 void CrossoverContact::for_each_place(double approach, const Add& add) const {
-  for (std::size_t warp = 0; warp < 2; ++warp)
-    for (std::size_t weft = 0; weft < 2; ++weft) {
-      const double share = floats_[warp][weft];
-      if (share == 0.0) continue;
-      const std::vector<double>&along = line_[0].gap[warp], &across = line_[1].gap[weft];
-      for (std::size_t i = 0; i < along.size(); ++i)
-        for (std::size_t j = 0; j < across.size(); ++j)
-          add(share * (line_[0].weight[i] * line_[1].weight[j]), approach - along[i] - across[j], i, j);
-    }
+  for (const auto& [top, floats, share] : kinds_) {
+    const std::vector<double>&along = line_[0].gap[top][floats[0]], &across = line_[1].gap[top][floats[1]];
+    for (std::size_t i = 0; i < along.size(); ++i)
+      for (std::size_t j = 0; j < across.size(); ++j)
+        add(share * (line_[0].weight[i] * line_[1].weight[j]), approach - along[i] - across[j], i, j);
+  }
 }
 
 CrossoverContact::Value CrossoverContact::evaluate(double approach) const {

@@ -18,13 +18,15 @@ namespace heddle::mesoscale {
 /// The gaps are those of the as-woven paths: contact spreads as tows are squeezed, paths keep their radius.
 /// Under shear they are carried along with the tow's oblique width, G(u) = G_0(u w / w_o): a loaded crossing
 /// is thinner than the as-woven one, so it does not share the jam of the as-woven path. Sections that cut
-/// into the path (G < 0) are taken as touching there.
+/// into the path (G < 0) are taken as touching there. The drop is that of the face that meets the other tow:
+/// where upper and lower halves differ, crossings with the warp on top and with the weft on top have each
+/// their share.
 class CrossoverContact {
  public:
   /// @param unsheared  the crossing at g = 0
-  /// @param floats     share of the quarters with a float; the mean crossing is taken
+  /// @param quarters   shares of the kinds of crossing; the mean crossing is taken
   CrossoverContact(const CrossingGeometry& unsheared, double shear_angle, const CompactionLaw& law,
-                   const FloatShares& floats = no_floats);
+                   const QuarterShares& quarters = plain_quarters);
 
   struct Value {
     double energy;     ///< U_c of both tows [J]
@@ -42,8 +44,9 @@ class CrossoverContact {
  private:
   /// Quadrature on [0, w_o/2] along one tow.
   struct Line {
-    std::vector<double> place, weight;       ///< [m]
-    std::array<std::vector<double>, 2> gap;  ///< G where the tow {changes sides, floats} [m]
+    std::vector<double> place, weight;  ///< [m]
+    /// G by the family on top, and where the tow {changes sides, floats} [m].
+    std::array<std::array<std::vector<double>, 2>, 2> gap;
   };
   static Line line_along(const CrossingGeometry& unsheared, double shear_angle, std::size_t tow);
   template <class Add>
@@ -51,7 +54,7 @@ class CrossoverContact {
 
   PairSqueeze squeeze_;
   double shear_angle_;
-  FloatShares floats_;
+  std::vector<QuarterKind> kinds_;
   std::array<Line, 2> line_;  ///< along {warp, weft}
 };
 

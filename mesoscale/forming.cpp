@@ -63,6 +63,13 @@ std::string describe(const CellSpec& spec) {
   const WeaveSpec lens;
   if (w.section != lens.section || w.section_power != lens.section_power || w.section_cap != lens.section_cap)
     text += fmt::format(";section {} {} {}", static_cast<int>(w.section), w.section_power, w.section_cap);
+  if (w.section == SectionShape::hybrid || w.upper != lens.upper || w.lower != lens.lower ||
+      w.upper_share != lens.upper_share) {
+    text += fmt::format(";upper_share {}", w.upper_share);
+    for (const HalfSpec& half : {w.upper, w.lower})
+      text +=
+          fmt::format(";half {} {} {}", static_cast<int>(half.section), half.section_power, half.section_cap);
+  }
   if (w.warp_crimp) text += fmt::format(";warp_crimp {}", *w.warp_crimp);
   if (f.compaction != CompactionChoice::toll)
     text += fmt::format(";compaction {} {} {}", static_cast<int>(f.compaction), f.gutowski_spring,

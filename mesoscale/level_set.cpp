@@ -178,12 +178,14 @@ CappedLensOutline outline(const CappedLensSection& section) {
 }
 
 // Surface of one tow piece: two faces S(u, v), by u along the tow and v across it, and two cuts.
-template <class SectionOutline>
+template <class Upper, class Lower>
 class TowSurface {
  public:
-  TowSurface(const UnitCell& cell, const TowPiece& tow, const SectionOutline& section)
+  TowSurface(const UnitCell& cell, const TowPiece& tow, const Upper& upper, const Lower& lower)
       : centre_(cell, tow),
-        section_(section),
+        upper_(upper),
+        lower_(lower),
+        edge_height_(edge_height(family(cell, tow).section)),
         pitch_(other_family(cell, tow).spacing),
         middle_(tow.index * family(cell, tow).spacing),
         warp_(tow.direction == TowDirection::warp),
@@ -193,25 +195,23 @@ class TowSurface {
     across_ = {sin_, cos_, 0.0};
     if (!warp_) std::swap(along_, across_);
     const int crossings = warp_ ? cell.weave.wefts : cell.weave.warps;
-    low_ = {-0.5 * pitch_, -section.edge()};
-    high_ = {(crossings - 0.5) * pitch_, section.edge()};
-    slope_ = (section.steepest() + centre_.steepest()) / cos_;
+    first_cut_ = -0.5 * pitch_;
+    last_cut_ = (crossings - 0.5) * pitch_;
+    slope_ = (std::max(upper.steepest(), lower.steepest()) + centre_.steepest()) / cos_;
   }
 
   double distance(const Vector3d& q) const {
     const double eta = q.y() / cos_, xi = q.x() - eta * sin_;
     const Local at = warp_ ? Local{xi, eta - middle_} : Local{eta, xi - middle_};
-    const double height = q.z() - centre_.at(std::clamp(at.along, low_[0], high_[0])).f;
+    const double height = over_edges(q, std::clamp(at.along, first_cut_, last_cut_));
     double nearest = face_distance(q, at, height);
     // The cuts run along the other tow direction, at cos g of the way; their rims belong to the faces.
-    for (const double cut : {low_[0], high_[0]}) {
+    for (const double cut : {first_cut_, last_cut_}) {
       const double away = (at.along - cut) * cos_;
       const double foot = at.across + (at.along - cut) * sin_;
-      if (std::abs(q.z() - centre_.at(cut).f) < section_.half_height(foot))
-        nearest = std::min(nearest, std::abs(away));
+      if (within(over_edges(q, cut), foot)) nearest = std::min(nearest, std::abs(away));
     }
-    const bool inside =
-        at.along > low_[0] && at.along < high_[0] && std::abs(height) < section_.half_height(at.across);
+    const bool inside = between_cuts(at) && within(height, at.across);
     return inside ? -nearest : nearest;
   }
 
@@ -223,27 +223,41 @@ class TowSurface {
     Matrix2d bend;      // r . S_ab
   };
 
-  // The face on the point's own side of the middle is the nearer one, unless the section is thin or steep
+  // Over the line from edge to edge of the section at a place along the tow.
+  double over_edges(const Vector3d& q, double along) const {
+    return q.z() - centre_.at(along).f - edge_height_;
+  }
+  bool between_cuts(const Local& at) const { return at.along > first_cut_ && at.along < last_cut_; }
+  bool within(double height, double across) const {
+    return -lower_.half_height(across) < height && height < upper_.half_height(across);
+  }
+
+  // The face on the point's own side of the edges is the nearer one, unless the section is thin or steep
   // there: the other is no nearer than the gap to it in z over sqrt(1 + slope^2).
   double face_distance(const Vector3d& q, const Local& at, double height) const {
     const double side = height >= 0.0 ? 1.0 : -1.0;
-    const double near = foot_distance(q, at, side);
-    const bool over_the_tow =
-        at.along > low_[0] && at.along < high_[0] && std::abs(at.across) < section_.half_width();
-    const double gap = std::abs(height) + section_.half_height(at.across);
+    const auto distance = [&](double of) {
+      return of > 0.0 ? foot_distance(q, at, of, upper_) : foot_distance(q, at, of, lower_);
+    };
+    const double near = distance(side);
+    const bool over_the_tow = between_cuts(at) && std::abs(at.across) < upper_.half_width();
+    const double other = side > 0.0 ? lower_.half_height(at.across) : upper_.half_height(at.across);
+    const double gap = std::abs(height) + other;
     if (over_the_tow && gap > near * std::sqrt(1.0 + slope_ * slope_)) return near;
-    return std::min(near, foot_distance(q, at, -side));
+    return std::min(near, distance(-side));
   }
 
-  double foot_distance(const Vector3d& q, const Local& start, double side) const {
-    Vector2d at = Vector2d(start.along, section_.above(start.across)).cwiseMax(low_).cwiseMin(high_);
-    Value now = value(q, at, side);
+  template <class Half>
+  double foot_distance(const Vector3d& q, const Local& start, double side, const Half& half) const {
+    const Vector2d low{first_cut_, -half.edge()}, high{last_cut_, half.edge()};
+    Vector2d at = Vector2d(start.along, half.above(start.across)).cwiseMax(low).cwiseMin(high);
+    Value now = value(q, at, side, half);
     double damping = 0.0;
     for (int k = 0; k < 60; ++k) {
-      const Vector2d next = step(now, at, damping), moved = next - at;
+      const Vector2d next = step(now, at, damping, low, high), moved = next - at;
       // In place, not in parameters. The distance is wrong by the square of what is left, over itself.
       if (moved.dot(now.tangents * moved) < 1e-12 * pitch_ * pitch_) break;
-      const Value then = value(q, next, side);
+      const Value then = value(q, next, side, half);
       if (then.energy <= now.energy) {
         at = next;
         now = then;
@@ -257,11 +271,13 @@ class TowSurface {
     return std::sqrt(2.0 * now.energy);
   }
 
-  Value value(const Vector3d& q, const Vector2d& at, double side) const {
+  template <class Half>
+  Value value(const Vector3d& q, const Vector2d& at, double side, const Half& half) const {
     const Jet path = centre_.at(at[0]);
-    const Profile p = section_.at(at[1]);
+    const Profile p = half.at(at[1]);
     const Vector3d up = Vector3d::UnitZ();
-    const Vector3d s = at[0] * along_ + (middle_ + p.across.f) * across_ + (path.f + side * p.height.f) * up;
+    const Vector3d s =
+        at[0] * along_ + (middle_ + p.across.f) * across_ + (path.f + edge_height_ + side * p.height.f) * up;
     const Vector3d su = along_ + path.d * up, sv = p.across.d * across_ + side * p.height.d * up;
     const Vector3d svv = p.across.dd * across_ + side * p.height.dd * up;
     const Vector3d r = s - q;
@@ -275,38 +291,44 @@ class TowSurface {
 
   // Newton's step, damped, on the rectangle of the parameters: one that leaves it stops at its edge and the
   // other parameter is solved alone.
-  Vector2d step(const Value& now, const Vector2d& at, double damping) const {
+  Vector2d step(const Value& now, const Vector2d& at, double damping, const Vector2d& low,
+                const Vector2d& high) const {
     Matrix2d h = now.tangents + now.bend;
     if (!(h(0, 0) > 0.0 && h(1, 1) > 0.0 && h.determinant() > 1e-6 * h(0, 0) * h(1, 1))) h = now.tangents;
     h.diagonal() += damping * now.tangents.diagonal();
     Vector2d next = at - h.inverse() * now.slope;
     for (int c = 0; c < 2; ++c) {
-      const double held = std::clamp(next[c], low_[c], high_[c]);
+      const double held = std::clamp(next[c], low[c], high[c]);
       if (held == next[c]) continue;
       const int other = 1 - c;
       Vector2d result;
       result[c] = held;
       result[other] = std::clamp(at[other] - (now.slope[other] + h(0, 1) * (held - at[c])) / h(other, other),
-                                 low_[other], high_[other]);
+                                 low[other], high[other]);
       return result;
     }
     return next;
   }
 
   Centreline centre_;
-  SectionOutline section_;
-  double pitch_, middle_;
+  Upper upper_;
+  Lower lower_;
+  double edge_height_, pitch_, middle_;
   bool warp_;
   double sin_, cos_, slope_ = 0.0;
+  double first_cut_ = 0.0, last_cut_ = 0.0;
   Vector3d along_, across_;
-  Vector2d low_, high_;
 };
 
 // Calls use(surface) with the surface of a tow piece, whatever its section.
 template <class Use>
 auto with_surface(const UnitCell& cell, const TowPiece& tow, const Use& use) {
-  return std::visit([&](const auto& section) { return use(TowSurface(cell, tow, outline(section))); },
-                    family(cell, tow).section);
+  const Section& section = family(cell, tow).section;
+  return std::visit(
+      [&](const auto& upper, const auto& lower) {
+        return use(TowSurface(cell, tow, outline(upper), outline(lower)));
+      },
+      section.upper, section.lower);
 }
 
 int crossings(const UnitCell& cell, const TowPiece& tow) {
@@ -330,7 +352,7 @@ double tow_distance(const UnitCell& cell, const TowPiece& tow, const std::array<
 
 LevelSet tow_level_set(const UnitCell& cell, const TowPiece& tow, double voxel, double half_width_voxels) {
   const UnitCell::Tow& own = family(cell, tow);
-  const double thickness = 2.0 * half_height(own.section, 0.0);
+  const double thickness = mesoscale::thickness(own.section);
   if (!(voxel > 0.0) || voxel > 0.2 * thickness)
     throw InputError(
         {{"level_set.voxel.range"_rule, "voxel", fmt::format("{} mm", 1e3 * voxel),
@@ -385,8 +407,7 @@ LevelSetCheck level_set_check(const UnitCell& cell, double voxel) {
 }
 
 TowBodies tow_bodies(const UnitCell& cell) {
-  const double thinnest =
-      2.0 * std::min(half_height(cell.tow[0].section, 0.0), half_height(cell.tow[1].section, 0.0));
+  const double thinnest = std::min(thickness(cell.tow[0].section), thickness(cell.tow[1].section));
   const LevelSetCheck check = level_set_check(cell, thinnest / 7.5);
   const Penetration heights = penetration(cell, 64);
   // Heights of 1e-3 m are rounded to 1e-19 m: below 1e-15 m tows touch and no more.

@@ -80,7 +80,7 @@ double parallel_tows(const View& view, const PlyShift& shift) {
       if (std::abs(apart) >= 2.0 * half) continue;
       const double across =
           largest(std::max(-half, apart - half), std::min(half, apart + half), pitch,
-                  [&](double y) { return half_height(section, y) + half_height(section, y - apart); });
+                  [&](double y) { return upper_face(section, y) - lower_face(section, y - apart); });
       const double along = largest(0.0, view.repeat(1), pitch, [&](double x) {
         return view.centre(0, lower, x) - view.centre(0, upper, x - shift[0]);
       });
@@ -99,12 +99,12 @@ double crossing_tows(const View& view, const PlyShift& shift) {
     for (int upper = 0; upper < view.count(1); ++upper) {
       const double at = upper * view.tow(1).spacing + shift[0];  // along the lower tow
       const double along = largest(at - half_above, at + half_above, view.tow(1).spacing, [&](double x) {
-        return view.centre(0, lower, x) + half_height(above, x - at);
+        return view.centre(0, lower, x) - lower_face(above, x - at);
       });
       const double middle = lower * view.tow(0).spacing;
       const double across = largest(
           middle - half_below, middle + half_below, view.tow(0).spacing,
-          [&](double y) { return half_height(below, y - middle) - view.centre(1, upper, y - shift[1]); });
+          [&](double y) { return upper_face(below, y - middle) - view.centre(1, upper, y - shift[1]); });
       most = std::max(most, along + across);
     }
   return most;

@@ -37,11 +37,13 @@ class TubeBuilder {
     // Even in the angle, so that strips are narrow where the section is thin.
     const UnitCell::Tow& tow = cell_.tow[is_warp() ? 0 : 1];
     const double across = -0.5 * width(tow.section) * std::cos(std::acos(-1.0) * strip / across_);
-    const double half = strip == 0 || strip == across_ ? 0.0 : half_height(tow.section, across);
+    const double height = strip == 0 || strip == across_ ? edge_height(tow.section)
+                          : upper                        ? upper_face(tow.section, across)
+                                                         : lower_face(tow.section, across);
     const double centre = is_warp() ? warp_centre(cell_, index_, along) : weft_centre(cell_, index_, along);
     const double side = index_ * tow.spacing + across;
     const std::array<double, 2> at = is_warp() ? cell_.place(along, side) : cell_.place(side, along);
-    return {at[0], at[1], centre + (upper ? half : -half)};
+    return {at[0], at[1], centre + height};
   }
 
   // Weft runs along eta and is wide along xi: the opposite hand of warp.
@@ -71,14 +73,16 @@ class TubeBuilder {
 Outline warp_band(const UnitCell& cell, int warp, double across, double start, int points_per_pitch) {
   Outline band{TowDirection::warp, {}};
   const int steps = points_per_pitch * cell.weave.wefts;
-  const double half = half_height(cell.tow[0].section, across), pitch = cell.tow[1].spacing;
+  const Section& section = cell.tow[0].section;
+  const double above = upper_face(section, across), below = lower_face(section, across);
+  const double pitch = cell.tow[1].spacing;
   for (int k = 0; k <= steps; ++k) {
     const double along = start + pitch * k / points_per_pitch;
-    band.points.push_back({along, warp_centre(cell, warp, along) + half});
+    band.points.push_back({along, warp_centre(cell, warp, along) + above});
   }
   for (int k = steps; k >= 0; --k) {
     const double along = start + pitch * k / points_per_pitch;
-    band.points.push_back({along, warp_centre(cell, warp, along) - half});
+    band.points.push_back({along, warp_centre(cell, warp, along) + below});
   }
   return band;
 }
@@ -91,8 +95,8 @@ Outline weft_section(const UnitCell& cell, double eta, int weft, int points_per_
     const bool upper = k < points_per_pitch;
     const double share = static_cast<double>(upper ? k : 2 * points_per_pitch - k) / points_per_pitch;
     const double across = w * (share - 0.5);
-    const double half = half_height(shape, across);
-    section.points.push_back({weft * cell.tow[1].spacing + across, centre + (upper ? half : -half)});
+    const double face = upper ? upper_face(shape, across) : lower_face(shape, across);
+    section.points.push_back({weft * cell.tow[1].spacing + across, centre + face});
   }
   return section;
 }

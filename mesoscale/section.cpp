@@ -61,6 +61,13 @@ double LensSection::reach(double depth) const {
   return std::sqrt(depth * (2.0 * radius() - depth));
 }
 
+double LensSection::centroid() const {
+  return 2.0 / area() * integrate(0.0, 0.5 * width, 16, [&](double y) {
+           const double f = half_height(y);
+           return f * f;
+         });
+}
+
 double LensSection::mean_square_height() const {
   const double moment = integrate(0.0, 0.5 * width, 16, [&](double y) {
     const double f = half_height(y);
@@ -97,6 +104,10 @@ double PowerEllipseSection::reach(double depth) const {
   if (depth <= 0.0) return 0.0;
   if (depth >= 0.5 * thickness) return 0.5 * width;
   return 0.5 * width * std::sqrt(-std::expm1(2.0 / power * std::log1p(-2.0 * depth / thickness)));
+}
+
+double PowerEllipseSection::centroid() const {
+  return 0.25 * thickness * power_integral(2.0 * power) / power_integral(power);
 }
 
 double PowerEllipseSection::mean_square_height() const {
@@ -151,6 +162,14 @@ double CappedLensSection::area() const {
   return 2.0 * (segment + 2.0 * cap * chord + flank * chord);
 }
 
+double CappedLensSection::centroid() const {
+  const auto square = [&](double y) {
+    const double f = half_height(y);
+    return f * f;
+  };
+  return 2.0 / area() * (integrate(0.0, cap, 8, square) + integrate(cap, 0.5 * width, 2, square));
+}
+
 double CappedLensSection::mean_square_height() const {
   const auto cube = [&](double y) {
     const double f = half_height(y);
@@ -159,52 +178,112 @@ double CappedLensSection::mean_square_height() const {
   return (integrate(0.0, cap, 8, cube) + integrate(cap, 0.5 * width, 2, cube)) / area();
 }
 
+namespace {
+
+double whole_thickness(const HalfSection& half) {
+  return std::visit([](const auto& s) { return s.thickness; }, half);
+}
+
+double whole_area(const HalfSection& half) {
+  return std::visit([](const auto& s) { return s.area(); }, half);
+}
+
+double height_of(const HalfSection& half, double y) {
+  return std::visit([y](const auto& s) { return s.half_height(y); }, half);
+}
+
+// First and second moment of a half about its middle line, over its area.
+struct HalfMoments {
+  double share;  ///< of the section's area [-]
+  double mean;   ///< [m]
+  double mean_square;
+};
+HalfMoments moments(const Section& section, Face face) {
+  const HalfSection& half = section.half(face);
+  return std::visit(
+      [&](const auto& s) {
+        return HalfMoments{0.5 * s.area() / area(section), s.centroid(), s.mean_square_height()};
+      },
+      half);
+}
+
+HalfSection resized(const HalfSection& half, double width, double thickness) {
+  if (const auto* power = std::get_if<PowerEllipseSection>(&half))
+    return PowerEllipseSection{width, thickness, power->power};
+  if (const auto* capped = std::get_if<CappedLensSection>(&half))
+    return capped_lens(width, thickness, capped->cap / (0.5 * capped->width));
+  return LensSection{width, thickness};
+}
+
+}  // namespace
+
+bool faces_alike(const Section& section) {
+  return section.upper == section.lower;
+}
+
 double width(const Section& section) {
-  return std::visit([](const auto& s) { return s.width; }, section);
+  return std::visit([](const auto& s) { return s.width; }, section.upper);
 }
 
 double thickness(const Section& section) {
-  return std::visit([](const auto& s) { return s.thickness; }, section);
-}
-
-double crown_radius(const Section& section) {
-  return std::visit([](const auto& s) { return s.crown_radius(); }, section);
+  return 0.5 * (whole_thickness(section.upper) + whole_thickness(section.lower));
 }
 
 double area(const Section& section) {
-  return std::visit([](const auto& s) { return s.area(); }, section);
+  return 0.5 * (whole_area(section.upper) + whole_area(section.lower));
 }
 
-double half_height(const Section& section, double y) {
-  return std::visit([y](const auto& s) { return s.half_height(y); }, section);
+double edge_height(const Section& section) {
+  return 0.25 * (whole_thickness(section.lower) - whole_thickness(section.upper));
 }
 
-double slope(const Section& section, double y) {
-  return std::visit([y](const auto& s) { return s.slope(y); }, section);
+double upper_face(const Section& section, double y) {
+  return edge_height(section) + height_of(section.upper, y);
 }
 
-double drop(const Section& section, double y) {
-  return std::visit([y](const auto& s) { return s.drop(y); }, section);
+double lower_face(const Section& section, double y) {
+  return edge_height(section) - height_of(section.lower, y);
 }
 
-double reach(const Section& section, double depth) {
-  return std::visit([depth](const auto& s) { return s.reach(depth); }, section);
+double crown_radius(const Section& section, Face face) {
+  return std::visit([](const auto& s) { return s.crown_radius(); }, section.half(face));
+}
+
+double slope(const Section& section, Face face, double y) {
+  return std::visit([y](const auto& s) { return s.slope(y); }, section.half(face));
+}
+
+double drop(const Section& section, Face face, double y) {
+  return std::visit([y](const auto& s) { return s.drop(y); }, section.half(face));
+}
+
+double reach(const Section& section, Face face, double depth) {
+  return std::visit([depth](const auto& s) { return s.reach(depth); }, section.half(face));
+}
+
+double mean_height(const Section& section) {
+  const HalfMoments above = moments(section, Face::upper), below = moments(section, Face::lower);
+  return edge_height(section) + (above.share * above.mean - below.share * below.mean);
 }
 
 double mean_square_height(const Section& section) {
-  return std::visit([](const auto& s) { return s.mean_square_height(); }, section);
+  const HalfMoments above = moments(section, Face::upper), below = moments(section, Face::lower);
+  const double e = edge_height(section);
+  return above.share * (e * (e + 2.0 * above.mean) + above.mean_square) +
+         below.share * (e * (e - 2.0 * below.mean) + below.mean_square);
 }
 
 double enclosing_radius(const Section& section) {
-  return LensSection{width(section), thickness(section)}.radius();
+  const auto radius = [&](const HalfSection& half) {
+    return LensSection{width(section), whole_thickness(half)}.radius();
+  };
+  return std::max(radius(section.upper), radius(section.lower));
 }
 
 Section resized(const Section& section, double width, double thickness) {
-  if (const auto* power = std::get_if<PowerEllipseSection>(&section))
-    return PowerEllipseSection{width, thickness, power->power};
-  if (const auto* capped = std::get_if<CappedLensSection>(&section))
-    return capped_lens(width, thickness, capped->cap / (0.5 * capped->width));
-  return LensSection{width, thickness};
+  const double above = whole_thickness(section.upper), below = whole_thickness(section.lower);
+  return {resized(section.upper, width, 2.0 * thickness * (above / (above + below))),
+          resized(section.lower, width, 2.0 * thickness * (below / (above + below)))};
 }
 
 }  // namespace heddle::mesoscale

@@ -5,7 +5,8 @@
 namespace heddle::mesoscale {
 
 // Sections of a tow as VERTICAL cuts across it: the tow volume per pitch is area times pitch, however the tow
-// is crimped. All are symmetric about both axes; f(y) is the half height at distance y from the middle.
+// is crimped. The shapes are symmetric about both axes; f(y) is the half height at distance y from the
+// middle. A section is made of two halves of them.
 
 /// Two equal circular arcs (a lens).
 ///
@@ -26,6 +27,7 @@ struct LensSection {
   double drop(double y) const;
   /// y >= 0 at which the upper face has fallen by `depth` [m]; the edge w/2 for depth >= t/2.
   double reach(double depth) const;
+  double centroid() const;  ///< of the half above the middle line, over that line [m]
   /// Mean of z^2 over the section about its mid-plane, I / A [m^2].
   double mean_square_height() const;
 
@@ -47,6 +49,7 @@ struct PowerEllipseSection {
   double slope(double y) const;
   double drop(double y) const;
   double reach(double depth) const;
+  double centroid() const;
   double mean_square_height() const;
 
   bool operator==(const PowerEllipseSection&) const = default;
@@ -72,6 +75,7 @@ struct CappedLensSection {
   double slope(double y) const;
   double drop(double y) const;
   double reach(double depth) const;
+  double centroid() const;
   double mean_square_height() const;
 
   bool operator==(const CappedLensSection&) const = default;
@@ -79,23 +83,55 @@ struct CappedLensSection {
 /// @param cap_share  y_c over w/2 [-], 0..1
 CappedLensSection capped_lens(double width, double thickness, double cap_share);
 
-using Section = std::variant<LensSection, PowerEllipseSection, CappedLensSection>;
+using HalfSection = std::variant<LensSection, PowerEllipseSection, CappedLensSection>;
 
+enum class Face { upper, lower };
+
+/// One shape above and one below, joined at the edges of the tow (TexGen's hybrid section, by halves). Each
+/// is given as the whole shape of which it is the half: as wide as the tow and twice as thick as the half, so
+/// that t = (upper.thickness + lower.thickness) / 2. Heights count from the middle of the thickness: crowns
+/// are at
+/// +-t/2 whatever the halves, and the edges at (lower.thickness - upper.thickness) / 4. Of two equal halves
+/// every number is that of the shape, bit for bit: only halves and sums of equal numbers are taken.
+struct Section {
+  HalfSection upper{}, lower{};
+
+  Section() = default;
+  Section(const LensSection& both) : upper(both), lower(both) {}
+  Section(const PowerEllipseSection& both) : upper(both), lower(both) {}
+  Section(const CappedLensSection& both) : upper(both), lower(both) {}
+  Section(const HalfSection& above, const HalfSection& below) : upper(above), lower(below) {}
+
+  const HalfSection& half(Face face) const { return face == Face::upper ? upper : lower; }
+  bool operator==(const Section&) const = default;
+};
+
+/// Are upper and lower half the same.
+bool faces_alike(const Section& section);
 double width(const Section& section);
 double thickness(const Section& section);
-double crown_radius(const Section& section);
 double area(const Section& section);
-double half_height(const Section& section, double y);
-double slope(const Section& section, double y);
-double drop(const Section& section, double y);
-double reach(const Section& section, double depth);
-double mean_square_height(const Section& section);
+double edge_height(const Section& section);  ///< of the line where the halves meet, over the middle [m]
+
+double upper_face(const Section& section, double y);  ///< over the middle of the thickness [m]
+double lower_face(const Section& section, double y);
+
+/// Of one face, as its shape has them: y from the middle, depth from the face's own crown [m].
+double crown_radius(const Section& section, Face face);
+double slope(const Section& section, Face face, double y);
+double drop(const Section& section, Face face, double y);
+double reach(const Section& section, Face face, double depth);
+
+double mean_height(const Section& section);         ///< mean of z, 0 of equal halves [m]
+double mean_square_height(const Section& section);  ///< mean of z^2 [m^2]
 
 /// Of the circle through crown and edges, (w^2 + t^2) / (4 t) [m]: what the path of the crossing tow is laid
-/// round, whatever the shape between them. Of a lens this is its own radius.
+/// round, whatever the shape between them. Of a lens this is its own radius; of unlike halves that of the
+/// flatter one, since the tow goes round either.
 double enclosing_radius(const Section& section);
 
-/// The same shape at another size. The arc of a capped lens keeps its share of the width.
+/// The same shape at another size: halves keep their shares of the thickness, the arc of a capped lens keeps
+/// its share of the width.
 Section resized(const Section& section, double width, double thickness);
 
 }  // namespace heddle::mesoscale

@@ -26,7 +26,7 @@ std::array<TensionTow, 2> sheared_tows(const ShearModel& model, double shear_ang
 }
 
 CrossoverContact contact_at(const ShearModel& model, double shear_angle) {
-  return {model.fabric.crossing, shear_angle, model.law, float_shares(model.fabric.quarters)};
+  return {model.fabric.crossing, shear_angle, model.law, model.fabric.quarters};
 }
 
 // Strain at which a tow of this crimp height carries the tension.
@@ -124,9 +124,11 @@ double mean_power_of_ellipse(double a, double b, double power) {
 }
 
 // Half the length of the contact along a tow.
-double contact_reach(const CrossingGeometry& crossing, std::size_t tow, bool floats, double film) {
+double contact_reach(const CrossingGeometry& crossing, std::size_t tow, const QuarterKind& kind,
+                     double film) {
   const double wrap = crossing.tow[tow].path.wrap();
-  return floats ? std::min(wrap, reach(crossing.tow[1 - tow].section, film)) : wrap;
+  const Face met = kind.top == tow ? Face::upper : Face::lower;  // of the other tow
+  return kind.floats[tow] ? std::min(wrap, reach(crossing.tow[1 - tow].section, met, film)) : wrap;
 }
 
 }  // namespace
@@ -237,16 +239,15 @@ double locking_angle(const Curve& shear_stress, double multiple) {
 ShearRateParts shear_rate_parts(const FabricGeometry& fabric, const ResinSpec& resin, double in_tow_share) {
   const CrossingGeometry& crossing = fabric.crossing;
   const double n = resin.power_index;
-  const FloatShares floats = float_shares(fabric.quarters);
+  const bool alike = faces_alike(crossing.tow[0].section) && faces_alike(crossing.tow[1].section);
   ShearRateParts parts;
-  for (const std::size_t warp : {0U, 1U})
-    for (const std::size_t weft : {0U, 1U}) {
-      const double a = contact_reach(crossing, 0, warp == 1, resin.film_thickness);
-      const double b = contact_reach(crossing, 1, weft == 1, resin.film_thickness);
-      parts.film += floats[warp][weft] * mean_power_of_ellipse(a, b, n + 3.0) * resin.consistency /
-                    std::pow(resin.film_thickness, n) * 2.0 * std::numbers::pi *
-                    std::pow(std::sqrt(a * b), n + 3.0) / ((n + 3.0) * crossing.area());
-    }
+  for (const QuarterKind& kind : quarter_kinds(fabric.quarters, alike)) {
+    const double a = contact_reach(crossing, 0, kind, resin.film_thickness);
+    const double b = contact_reach(crossing, 1, kind, resin.film_thickness);
+    parts.film += kind.share * mean_power_of_ellipse(a, b, n + 3.0) * resin.consistency /
+                  std::pow(resin.film_thickness, n) * 2.0 * std::numbers::pi *
+                  std::pow(std::sqrt(a * b), n + 3.0) / ((n + 3.0) * crossing.area());
+  }
   for (std::size_t i = 0; i < 2; ++i) {
     const TowGeometry& tow = crossing.tow[i];
     const double v = tow.fibre_fraction, saturation = std::min(fabric.tow_solid_fraction[i], 1.0);

@@ -170,7 +170,7 @@ TensionModel tension_model(const FabricGeometry& fabric, const CompactionLaw& la
                           (8.0 * tow.step * tow.step) * (tow.spacing / tow.step);
   }
 
-  const CrossoverContact contact(fabric.crossing, 0.0, law, float_shares(fabric.quarters));
+  const CrossoverContact contact(fabric.crossing, 0.0, law, fabric.quarters);
   const double deepest = contact.approach_at(0.85);  // beyond, the curve goes on straight, at some 1e8 N/m
   constexpr int points = 600;
   std::vector<double> approach(points), force(points);

@@ -275,4 +275,18 @@ FloatShares float_shares(const QuarterShares& quarters) {
   return shares;
 }
 
+std::vector<QuarterKind> quarter_kinds(const QuarterShares& quarters, bool faces_alike) {
+  const FloatShares either = float_shares(quarters);
+  std::vector<QuarterKind> kinds;
+  for (std::size_t top = 0; top < (faces_alike ? 1 : 2); ++top)
+    for (std::size_t warp = 0; warp < 2; ++warp)
+      for (std::size_t weft = 0; weft < 2; ++weft) {
+        const double share = faces_alike ? either[warp][weft]
+                             : top == 0  ? quarters[0][warp][weft]
+                                         : quarters[1][weft][warp];
+        if (share > 0.0) kinds.push_back({top, {warp == 1, weft == 1}, share});
+      }
+  return kinds;
+}
+
 }  // namespace heddle::mesoscale

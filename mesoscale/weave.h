@@ -68,4 +68,16 @@ using FloatShares = std::array<std::array<double, 2>, 2>;
 inline constexpr FloatShares no_floats{{{1.0, 0.0}, {0.0, 0.0}}};
 FloatShares float_shares(const QuarterShares& quarters);
 
+/// Of the plain weave: nothing floats, either family is on top at every other crossing.
+inline constexpr QuarterShares plain_quarters{{{{{0.5, 0.0}, {0.0, 0.0}}}, {{{0.5, 0.0}, {0.0, 0.0}}}}};
+
+struct QuarterKind {
+  std::size_t top;             ///< family on top: 0 = warp, 1 = weft
+  std::array<bool, 2> floats;  ///< of {warp, weft}
+  double share;                ///< > 0; all add to 1
+};
+/// The kinds of quarter crossing that occur.
+/// @param faces_alike  it does not matter which is on top: each kind stands once, as warp on top
+std::vector<QuarterKind> quarter_kinds(const QuarterShares& quarters, bool faces_alike);
+
 }  // namespace heddle::mesoscale

@@ -47,7 +47,16 @@ mesoscale::SectionShape section_of(const Settings& settings, const std::string& 
   if (settings.is(path, "ellipse")) return SectionShape::ellipse;
   if (settings.is(path, "power_ellipse")) return SectionShape::power_ellipse;
   if (settings.is(path, "capped_lens")) return SectionShape::capped_lens;
+  if (settings.is(path, "hybrid")) return SectionShape::hybrid;
   return SectionShape::lens;
+}
+
+mesoscale::HalfSpec half_of(const Settings& settings, const std::string& block) {
+  mesoscale::HalfSpec half;
+  half.section = section_of(settings, block + ".section");
+  take(settings, block + ".section_power", half.section_power);
+  take(settings, block + ".section_cap", half.section_cap);
+  return half;
 }
 
 mesoscale::WeaveSpec weave_of(const Settings& settings, const std::string& block) {
@@ -68,6 +77,9 @@ mesoscale::WeaveSpec weave_of(const Settings& settings, const std::string& block
   weave.section = section_of(settings, block + ".section");
   take(settings, block + ".section_power", weave.section_power);
   take(settings, block + ".section_cap", weave.section_cap);
+  weave.upper = half_of(settings, block + ".upper");
+  weave.lower = half_of(settings, block + ".lower");
+  take(settings, block + ".upper_share", weave.upper_share);
   if (settings.has(block + ".warp_crimp")) weave.warp_crimp = settings.number(block + ".warp_crimp");
   weave.own = {own_tow_of(settings, block + ".warp."), own_tow_of(settings, block + ".weft.")};
   return weave;

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <limits>
+#include <sstream>
 #include <stdexcept>
 
 #include "core/units.h"
@@ -74,8 +75,8 @@ std::vector<Key> weave_keys() {
       {.path = "weave.warp_crimp", .type = KeyType::quantity, .unit = "%", .presence = optional, .range = "[0, 1]",
        .stage = cell, .help = "Share of the crimp height that the warps take; absent: faces are flush."},
       {.path = "weave.section", .type = KeyType::choice, .presence = defaulted, .default_text = "lens",
-       .choices = {"lens", "ellipse", "power_ellipse", "capped_lens"}, .stage = cell,
-       .help = "Outline of a tow cut across. Lens and capped lens do not reach into the tows they cross; the others do."},
+       .choices = {"lens", "ellipse", "power_ellipse", "capped_lens", "hybrid"}, .stage = cell,
+       .help = "Outline of a tow cut across. Lens and capped lens do not reach into the tows they cross; ellipses do. hybrid: one shape above, another below."},
       {.path = "weave.section_power", .type = KeyType::quantity, .presence = defaulted, .default_text = "0.5",
        .range = "[0.2, 4]", .stage = cell, .used_when = "weave.section=power_ellipse",
        .help = "n of t/2 (1 - (2y/w)^2)^(n/2): 1 is the ellipse, smaller is fuller."},
@@ -122,6 +123,29 @@ std::vector<Key> own_tow_keys() {
   return keys;
 }
 
+// The halves of a hybrid section: the shapes of the whole ones.
+std::vector<Key> half_section_keys() {
+  std::vector<Key> keys{
+      {.path = "weave.upper_share", .type = KeyType::quantity, .unit = "%", .presence = defaulted,
+       .default_text = "50 %", .range = "[10 %, 90 %]", .stage = Stage::cell, .used_when = "weave.section=hybrid",
+       .help = "Thickness of the upper half of the section over that of the tow."}};
+  for (const std::string half : {"upper", "lower"})
+    for (Key key : weave_keys()) {
+      const std::string name = key.path.substr(key.path.find('.') + 1);
+      if (!name.starts_with("section")) continue;
+      key.path = "weave." + half + "." + name;
+      if (name == "section") {
+        std::erase(key.choices, "hybrid");
+        key.help = fmt::format("Shape of the {} half of the section.", half);
+      }
+      const std::string shape = key.used_when.substr(key.used_when.find('=') + 1);
+      key.used_when = "weave.section=hybrid";
+      if (!shape.empty()) key.used_when += fmt::format(" weave.{}.section={}", half, shape);
+      keys.push_back(std::move(key));
+    }
+  return keys;
+}
+
 std::vector<Key> fabric_keys() {
   const auto cell = Stage::cell;
   return {
@@ -129,6 +153,14 @@ std::vector<Key> fabric_keys() {
        .choices = {"on", "off"}, .stage = cell,
        .help = "Master switch of the rate-dependent shear resistance."},
   };
+}
+
+// Conditions on keys of `weave`, of the weave of the calibration pulls.
+std::string of_the_pulled_weave(const std::string& conditions) {
+  std::string result;
+  std::istringstream terms(conditions);
+  for (std::string term; terms >> term;) result += " friction.calibration." + term;
+  return result;
 }
 
 // The weave of the calibration pulls: the keys of `weave`, each with Table 1 as its default. A weave under study may
@@ -140,6 +172,7 @@ std::vector<Key> calibration_weave_keys() {
   std::vector<Key> keys;
   std::vector<Key> all = weave_keys();
   append(all, own_tow_keys());
+  append(all, half_section_keys());
   for (Key key : all) {
     for (const auto& [name, value] : table1)
       if (key.path == "weave." + name) key.default_text = value;
@@ -148,7 +181,7 @@ std::vector<Key> calibration_weave_keys() {
     if (key.used_when.empty() && key.presence == required) key.presence = defaulted;
     key.stage = Stage::friction;
     // What another key of the weave asks for, the same key of this weave asks for here.
-    key.used_when = key.used_when.empty() ? when : when + " friction.calibration." + key.used_when;
+    key.used_when = when + of_the_pulled_weave(key.used_when);
     key.help = "Of the fabric that was pulled. " + key.help;
     keys.push_back(std::move(key));
   }
@@ -461,6 +494,7 @@ std::vector<Key> all_keys() {
   std::vector<Key> keys = head_keys();
   append(keys, weave_keys());
   append(keys, own_tow_keys());
+  append(keys, half_section_keys());
   append(keys, cell_keys());
   append(keys, voxel_keys());
   append(keys, fabric_keys());

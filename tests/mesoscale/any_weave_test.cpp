@@ -102,7 +102,7 @@ TEST_CASE("the overlap check of a weave finds tows that do overlap", "[weave][ge
   const auto path = std::get<ArcPath>(cell.tow[0].path);
   // The warp bends more sharply than the weft it goes round.
   cell.tow[0].path =
-      arc_path(path.pitch, path.height, 0.8 * std::get<LensSection>(cell.tow[1].section).radius());
+      arc_path(path.pitch, path.height, 0.8 * std::get<LensSection>(cell.tow[1].section.upper).radius());
   CHECK(penetration(cell, 24).depth > 1e-6);
 }
 
@@ -111,7 +111,7 @@ TEST_CASE("faces of an unbalanced weave are flush: crowns of both families at ha
   const CellSpec spec = unbalanced();
   const UnitCell cell = unit_cell(fabric_geometry(spec.weave, CellState::as_woven), radians(12.0));
   for (const UnitCell::Tow& tow : cell.tow)
-    CHECK(0.5 * height(tow.path) + half_height(tow.section, 0.0) == Approx(0.75e-3).epsilon(1e-12));
+    CHECK(0.5 * height(tow.path) + upper_face(tow.section, 0.0) == Approx(0.75e-3).epsilon(1e-12));
   CHECK(cell.crown() == Approx(0.5 * spec.weave.fabric_thickness).epsilon(1e-12));
 }
 
@@ -253,7 +253,7 @@ TEST_CASE("a satin of long floats touches a plate along its crowns, 2 sqrt(2 R d
   for (const auto& pattern : {"satin 5/2", "satin 11/3", "satin 31/7"}) {
     const FabricGeometry fabric = fabric_geometry(of_pattern(pattern).weave, CellState::as_woven);
     const Section& section = fabric.crossing.tow[0].section;
-    const double straight = 2.0 * reach(section, depth) / fabric.crossing.tow[0].spacing;
+    const double straight = 2.0 * reach(section, Face::upper, depth) / fabric.crossing.tow[0].spacing;
     const double gap = 1.0 - plate_contact(fabric, law, 0.0).touched_fraction(depth) / straight;
     CHECK(gap > 0.0);
     CHECK(gap < before);

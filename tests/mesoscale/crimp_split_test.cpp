@@ -84,7 +84,7 @@ TEST_CASE("a plate touches the higher crowns first", "[crimp][contact]") {
   const TowGeometry& warp = fabric.crossing.tow[0];
   const double d = 2e-6, p = warp.spacing;
   const double half =
-      3.141592653589793 * d * std::sqrt(crown_radius(warp.section) * warp.path.radius) / (p * p);
+      3.141592653589793 * d * std::sqrt(crown_radius(warp.section, Face::upper) * warp.path.radius) / (p * p);
   CHECK(plate.touched_fraction(d) == Approx(half).epsilon(2e-3));
   // 0.075 mm further down, where the wefts stand.
   const double below = 0.075e-3;

@@ -24,7 +24,7 @@ OnFace on_face(const UnitCell& cell, const TowPiece& tow, double along, double a
   const bool warp = tow.direction == TowDirection::warp;
   const auto height_at = [&](double u, double v) {
     const double centre = warp ? warp_centre(cell, tow.index, u) : weft_centre(cell, tow.index, u);
-    return centre + side * half_height(cell.tow[0].section, v);
+    return centre + (side > 0.0 ? upper_face(cell.tow[0].section, v) : lower_face(cell.tow[0].section, v));
   };
   const double side_place = tow.index * cell.tow[0].spacing + across;
   const auto xy = warp ? cell.place(along, side_place) : cell.place(side_place, along);

@@ -1,7 +1,9 @@
 #pragma once
 
+#include <array>
 #include <random>
 #include <string>
+#include <utility>
 
 #include "mesoscale/cell_spec.h"
 #include "mesoscale/weave.h"
@@ -46,6 +48,30 @@ inline mesoscale::WeaveSpec random_weave(std::mt19937& random) {
     spec.weave.fabric_thickness = thickness;
     if (check(spec).empty()) return spec.weave;
   }
+}
+
+// The same tows with unlike halves of any shape.
+inline mesoscale::WeaveSpec with_random_halves(mesoscale::WeaveSpec weave, std::mt19937& random) {
+  using mesoscale::SectionShape;
+  weave.section = SectionShape::hybrid;
+  weave.upper_share = uniform(random, 0.1, 0.9);
+  for (mesoscale::HalfSpec* half : {&weave.upper, &weave.lower}) {
+    half->section = std::array{SectionShape::lens, SectionShape::ellipse, SectionShape::power_ellipse,
+                               SectionShape::capped_lens}[random() % 4];
+    half->section_power = uniform(random, 0.2, 4.0);
+    half->section_cap = uniform(random, 0.1, 1.0);
+  }
+  return weave;
+}
+
+// With halves of one thickness that are no fuller than the lens: these stay clear of each other at any angle.
+inline mesoscale::WeaveSpec with_slim_halves(mesoscale::WeaveSpec weave, std::mt19937& random) {
+  weave = with_random_halves(weave, random);
+  weave.upper_share = 0.5;
+  weave.upper.section = mesoscale::SectionShape::lens;
+  weave.lower.section = mesoscale::SectionShape::capped_lens;
+  if (random() % 2 == 0) std::swap(weave.upper, weave.lower);
+  return weave;
 }
 
 }  // namespace heddle::test

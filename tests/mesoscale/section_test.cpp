@@ -40,7 +40,7 @@ TEST_CASE("areas and second moments of all sections are the integrals of their o
   double sum = 0.0, moment = 0.0;
   constexpr int n = 400000;
   for (int k = 0; k < n; ++k) {
-    const double f = half_height(section, w * ((k + 0.5) / n - 0.5));
+    const double f = upper_face(section, w * ((k + 0.5) / n - 0.5));
     sum += 2.0 * f * w / n;
     moment += 2.0 / 3.0 * f * f * f * w / n;
   }
@@ -55,16 +55,17 @@ TEST_CASE(
       GENERATE(Section(PowerEllipseSection{w, t, 1.0}), Section(PowerEllipseSection{w, t, 0.5}),
                Section(PowerEllipseSection{w, t, 2.0}), Section(capped_lens(w, t, 0.4)));
   const double y = GENERATE(-1.9e-3, -0.3e-3, 0.8e-3, 2.1e-3);
-  const auto outline = [&](double x) { return half_height(section, x); };
-  CHECK(derivative_gap(outline, y, 1e-4, slope(section, y)) < 1e-7);
-  CHECK(derivative_gap(outline, y, 1e-4, 1.01 * slope(section, y)) > 1e-4);
-  CHECK(drop(section, y) == Approx(0.5 * t - half_height(section, y)).epsilon(1e-10));
-  CHECK(reach(section, drop(section, y)) == Approx(std::abs(y)).epsilon(1e-10));
-  CHECK(half_height(section, 0.6 * w) == 0.0);
-  CHECK(reach(section, t) == 0.5 * w);
+  const auto outline = [&](double x) { return upper_face(section, x); };
+  CHECK(derivative_gap(outline, y, 1e-4, slope(section, Face::upper, y)) < 1e-7);
+  CHECK(derivative_gap(outline, y, 1e-4, 1.01 * slope(section, Face::upper, y)) > 1e-4);
+  CHECK(drop(section, Face::upper, y) == Approx(0.5 * t - upper_face(section, y)).epsilon(1e-10));
+  CHECK(reach(section, Face::upper, drop(section, Face::upper, y)) == Approx(std::abs(y)).epsilon(1e-10));
+  CHECK(upper_face(section, 0.6 * w) == 0.0);
+  CHECK(reach(section, Face::upper, t) == 0.5 * w);
   // At the crown the outline is a circle of the crown radius.
   const double near = 1e-5;
-  CHECK(drop(section, near) == Approx(near * near / (2.0 * crown_radius(section))).epsilon(1e-3));
+  CHECK(drop(section, Face::upper, near) ==
+        Approx(near * near / (2.0 * crown_radius(section, Face::upper))).epsilon(1e-3));
 }
 
 TEST_CASE("an ellipse is the power ellipse of power one, and has its closed-form area", "[section]") {

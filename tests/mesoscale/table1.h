@@ -15,7 +15,7 @@ inline mesoscale::FabricGeometry table1() {
 
 /// The section of a crossing whose tows are lenses.
 inline mesoscale::LensSection lens_of(const mesoscale::CrossingGeometry& crossing) {
-  return std::get<mesoscale::LensSection>(crossing.tow[0].section);
+  return std::get<mesoscale::LensSection>(crossing.tow[0].section.upper);
 }
 
 /// Elliptic tows on sine paths: the geometry that does interpenetrate.

@@ -117,7 +117,7 @@ class TetBuilder {
 
   double half_of(std::size_t tow, double side) const {
     const auto& section = cell_.tow[tow].section;
-    return mesoscale::half_height(section, 0.5 * side * mesoscale::width(section));
+    return mesoscale::upper_face(section, 0.5 * side * mesoscale::width(section));
   }
 
   void finish_line(int index, const std::array<double, faces>& z, const std::array<bool, faces>& here,

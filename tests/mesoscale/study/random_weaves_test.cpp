@@ -21,6 +21,8 @@ using heddle::test::radians;
 using heddle::test::random_weave;
 using heddle::test::uniform;
 using heddle::test::whole;
+using heddle::test::with_random_halves;
+using heddle::test::with_slim_halves;
 
 namespace {
 
@@ -138,6 +140,28 @@ void check_weaves(int count, unsigned seed) {
   worst.print(count);
 }
 
+// Hybrid tows of the random weaves: slim halves of one thickness overlap no more than lenses, any halves hold
+// their mass and leave every law finite.
+void check_hybrids(int count, unsigned seed) {
+  std::mt19937 random(seed);
+  Worst worst;
+  double mass = 0.0;
+  for (int k = 0; k < count; ++k) {
+    const WeaveSpec weave = random_weave(random);
+    const double angle = radians(uniform(random, -55.0, 55.0));
+    CellSpec slim = in_some_state(with_slim_halves(weave, random), random);
+    CellSpec any = in_some_state(with_random_halves(weave, random), random);
+    CAPTURE(k, weave.pattern, angle, static_cast<int>(any.state), any.weave.upper_share);
+    check_geometry(slim, angle, worst);
+    mass = std::max(mass, mass_gap(any.weave, fabric_geometry(any)));
+    check_forming_laws(any, angle);
+  }
+  CHECK(worst.mass < 1e-12);
+  CHECK(mass < 1e-12);
+  std::printf("%d random weaves of hybrid tows: slim halves overlap by %.1e m, mass off by %.1e\n", count,
+              worst.overlap, std::max(mass, worst.mass));
+}
+
 // One number pushed against another. Returns the number it clashes with, as messages show it.
 std::string spoil(CellSpec& cell, std::mt19937& random) {
   WeaveSpec& w = cell.weave;
@@ -194,6 +218,11 @@ TEST_CASE(
     "five hundred random weaves: no overlap, mass closed, stiffness between Reuss and Voigt, laws finite",
     "[weave][solid][bound][slow]") {
   check_weaves(500, 62);
+}
+
+TEST_CASE("twenty random weaves of hybrid tows: slim halves stay apart, mass closed, laws finite",
+          "[weave][hybrid][bound]") {
+  check_hybrids(20, 64);
 }
 
 TEST_CASE("two hundred weaves that cannot be: each message names the two numbers that clash", "[weave]") {
