@@ -51,13 +51,14 @@ void check_header(const CsvRow& header, std::span<const Name> known,
   const std::string list = fmt::format("Known columns: {}.", fmt::join(names, ", "));
   for (const std::string& name : header.cells) {
     if (std::ranges::count(names, name) > 0 || std::ranges::count(passed_over, name) > 0) continue;
-    const auto meant = std::ranges::find_if(
-        names, [&](std::string_view known_name) { return without_unit(known_name) == without_unit(name); });
+    const auto meant = std::ranges::find_if(known, [&](const Name& column) {
+      return !column.unit.empty() && without_unit(column.name) == without_unit(name);
+    });
     problems.add(
         rules.unknown, name, "", fmt::format("is no column of {}", rules.what),
-        meant == names.end()
+        meant == known.end()
             ? list
-            : fmt::format("Convert its numbers and call it {}: the unit stands in the name.", *meant),
+            : fmt::format("Convert its numbers and call it {}: the unit stands in the name.", meant->name),
         header.line);
   }
   for (const Name& column : known)

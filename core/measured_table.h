@@ -45,6 +45,7 @@ namespace table_detail {
 
 struct Name {
   std::string_view name;
+  std::string_view unit;
   bool required;
 };
 
@@ -82,7 +83,7 @@ std::vector<Row> read_rows(const CsvTable& table, const std::array<TableColumn<R
                            std::span<const std::string_view> passed_over = {}) {
   problems.list.insert(problems.list.end(), table.problems.begin(), table.problems.end());
   std::vector<table_detail::Name> names;
-  for (const TableColumn<Row>& column : columns) names.push_back({column.name, column.required});
+  for (const TableColumn<Row>& column : columns) names.push_back({column.name, column.unit, column.required});
   table_detail::check_header(table.header, names, passed_over, rules, problems);
 
   std::vector<const TableColumn<Row>*> of_cell(table.header.cells.size(), nullptr);

@@ -271,17 +271,18 @@ void check_crimp_room(Problems& problems, const WeaveSpec& w) {
   const double asked = w.crimp_excess(), room = excess_with_room(w, asked);
   if (std::abs(asked - room) <= 1e-12 * w.fabric_thickness) return;
   const double both = w.tow(0).thickness + w.tow(1).thickness;
-  problems.push_back({"weave.warp_crimp.room"_rule,
-                      "weave.warp_crimp",
-                      fmt::format("{:.6g} %", 100.0 * *w.warp_crimp),
-                      fmt::format("must be at {} {:.6g} %: the {}s would cut into the {}s they go round",
-                                  asked > room ? "most" : "least", 100.0 * (room + w.tow(1).thickness) / both,
-                                  asked > room ? "warp" : "weft", asked > room ? "weft" : "warp"),
-                      "Give a share nearer to 50 %, or wider gaps.",
-                      "",
-                      0,
-                      {keys_of(w, 0).width, keys_of(w, 1).width, keys_of(w, 0).gap, keys_of(w, 1).gap,
-                       keys_of(w, 0).thickness, keys_of(w, 1).thickness}});
+  problems.push_back(
+      {"weave.warp_crimp.room"_rule,
+       "weave.warp_crimp",
+       fmt::format("{:.6g} %", 100.0 * *w.warp_crimp),
+       fmt::format("must be at {} {:.6g} %: the {}s would cut into the {}s they go round",
+                   asked > room ? "most" : "least", 100.0 * (room + w.tow(1).thickness) / both,
+                   asked > room ? "warp" : "weft", asked > room ? "weft" : "warp"),
+       "Give a share nearer to 50 %, or wider gaps.",
+       "",
+       0,
+       {keys_of(w, 0).width, keys_of(w, 1).width, keys_of(w, 0).gap, keys_of(w, 1).gap,
+        keys_of(w, 0).thickness, keys_of(w, 1).thickness, "weave.section", "weave.upper_share"}});
 }
 
 // Each direction rises by the thickness of the other, so the thinner one crimps the more: beyond this it

@@ -28,12 +28,6 @@ constexpr std::pair<CaseStatus, const char*> status_names[] = {{CaseStatus::done
                                                                {CaseStatus::bad_input, "bad_input"},
                                                                {CaseStatus::interrupted, "interrupted"}};
 
-std::string name_of(CaseStatus status) {
-  for (const auto& [value, name] : status_names)
-    if (value == status) return name;
-  throw std::logic_error("a status without a name");
-}
-
 Problems check(const std::vector<ListedCase>& cases) {
   Problems problems;
   std::set<std::string> seen;
@@ -130,6 +124,12 @@ CaseRecord run_one(const ListedCase& listed, const CaseListOptions& options) {
 }
 
 }  // namespace
+
+std::string name_of(CaseStatus status) {
+  for (const auto& [value, name] : status_names)
+    if (value == status) return name;
+  throw std::logic_error("a status without a name");
+}
 
 std::string record_json(const CaseRecord& record) {
   Json results = Json::object();

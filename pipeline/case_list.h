@@ -23,6 +23,9 @@ enum class CaseStatus {
   interrupted,  ///< by a signal: the list ends here, and the next call goes on in the middle of this case
 };
 
+/// As records and tables have it: "done", "bad_input".
+std::string name_of(CaseStatus status);
+
 /// What is known of one case: FOLDER/cases/ID.json. No times: those are in cases/ID/manifest.json.
 struct CaseRecord {
   std::string id;

@@ -140,11 +140,12 @@ void write_findings(const Case& a_case, RunFolder& folder, const Findings& findi
   if (findings.stamping) {
     record.stamping = findings.stamping->summary;
     record.grid_error = findings.grid_error;
+    record.indicators = findings.indicators;
     record.failure = findings.stamping->failure;
     if (record.failure)
       record.advice = macroscale::advice_for(*record.failure, *a_case.stamping, *record.stamping);
   }
-  folder.write("summary.json", summary_json(record, findings.indicators));
+  folder.write("summary.json", summary_json(record));
   folder.write("report.html", report_html(report_input(a_case, findings)));
   folder.close(a_case, stage_hashes(a_case));
 }

@@ -4,9 +4,8 @@
 #include <stdexcept>
 
 #include <fmt/format.h>
-#include <nlohmann/json.hpp>
 
-#include "pipeline/json_text.h"
+#include "pipeline/outputs.h"
 #include "pipeline/painter.h"
 
 namespace heddle::pipeline {
@@ -28,10 +27,6 @@ const LargestIndicator& named(const std::vector<LargestIndicator>& all, const st
   return *found;
 }
 
-std::string name_in_file(const LargestIndicator& indicator) {
-  return indicator.name + (indicator.unit.empty() ? "" : "_" + indicator.unit);
-}
-
 std::string place(const LargestIndicator& indicator) {
   return fmt::format("at ({:.0f}, {:.0f}, {:.0f}) mm", 1e3 * indicator.at[0], 1e3 * indicator.at[1],
                      1e3 * indicator.at[2]);
@@ -50,14 +45,6 @@ QuadMesh mesh_with_indicators(const macroscale::BlankState& blank,
   add_nodal(mesh, blank, std::move(height));
   add_nodal(mesh, blank, {"thickening", 1, of.thickening});
   return mesh;
-}
-
-std::string summary_json(const SummaryRecord& record, const std::vector<LargestIndicator>& indicators) {
-  if (indicators.empty()) return summary_json(record);
-  nlohmann::ordered_json root = nlohmann::ordered_json::parse(summary_json(record));
-  for (const LargestIndicator& indicator : indicators)
-    root["macroscale"]["indicators"][name_in_file(indicator)] = indicator.value;
-  return json_text(root);
 }
 
 std::string indicators_csv(const std::vector<LargestIndicator>& indicators) {

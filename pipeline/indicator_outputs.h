@@ -5,17 +5,12 @@
 
 #include "macroscale/indicators.h"
 #include "pipeline/export_vtu.h"
-#include "pipeline/outputs.h"
 
 namespace heddle::pipeline {
 
 /// The blank as mesh_of has it, with its indicators: tow_load_warp_weft, gap_opening_warp_weft_mm,
 /// wrinkle_height_mm, thickening.
 QuadMesh mesh_with_indicators(const macroscale::BlankState& blank, const mesoscale::FabricProperties& fabric);
-
-/// summary.json with the block "indicators" below "macroscale", a number each.
-std::string summary_json(const SummaryRecord& record,
-                         const std::vector<macroscale::LargestIndicator>& indicators);
 
 /// indicators.csv: name, value, unit, and where the largest is [mm].
 std::string indicators_csv(const std::vector<macroscale::LargestIndicator>& indicators);

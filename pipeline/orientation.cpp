@@ -82,17 +82,13 @@ std::string pictures(const OrientationFindings& findings) {
   for (const OrientedBlank& blank : findings.blanks)
     for (const double angle : blank.result.final_state.shear_angle)
       largest = std::max(largest, std::abs(angle));
-  std::string out;
-  for (std::size_t k = 0; k < findings.blanks.size(); ++k) {
-    const OrientedBlank& blank = findings.blanks[k];
-    if (k % 2 == 0) out += "<div class=\"pair\">\n";
-    out +=
+  std::vector<std::string> figures;
+  for (const OrientedBlank& blank : findings.blanks)
+    figures.push_back(
         figure(top_picture(blank.result.final_state, largest),
                fmt::format("Warp at {}° to x{}.", angle_text(blank.angle),
-                           blank.result.summary.completed ? "" : " (stopped before the end of the stroke)"));
-    if (k % 2 == 1 || k + 1 == findings.blanks.size()) out += "</div>\n";
-  }
-  return out;
+                           blank.result.summary.completed ? "" : " (stopped before the end of the stroke)")));
+  return pairs(figures);
 }
 
 Canvas force_chart_of(const std::vector<OrientedBlank>& blanks) {

@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "macroscale/grid_error.h"
+#include "macroscale/indicators.h"
 #include "macroscale/stamping.h"
 #include "mesoscale/cell_spec.h"
 #include "mesoscale/level_set.h"
@@ -143,8 +144,9 @@ struct SummaryRecord {
   std::optional<double> contact_area_fraction_binder = {};  ///< phi under the binder's mean pressure [-]
   std::optional<macroscale::StampingSummary> stamping = {};
   std::optional<macroscale::GridError> grid_error = {};
-  std::optional<macroscale::StampingFailure> failure = {};  ///< of a stamping that stopped
-  std::string advice = {};                                  ///< what to try after it
+  std::vector<macroscale::LargestIndicator> indicators = {};  ///< of the last state
+  std::optional<macroscale::StampingFailure> failure = {};    ///< of a stamping that stopped
+  std::string advice = {};                                    ///< what to try after it
 };
 
 std::string summary_json(const SummaryRecord& record);

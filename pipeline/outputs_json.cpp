@@ -324,6 +324,10 @@ mesoscale::FabricProperties read_fabric(Reader& reader, const Json& root) {
   return fabric;
 }
 
+std::string name_with_unit(const macroscale::LargestIndicator& indicator) {
+  return indicator.name + (indicator.unit.empty() ? "" : "_" + indicator.unit);
+}
+
 Json texts_json(const std::vector<std::pair<std::string, std::string>>& entries) {
   Json out = Json::object();
   for (const auto& [key, value] : entries) out[key] = value;
@@ -346,6 +350,8 @@ std::string summary_json(const SummaryRecord& record) {
   if (record.stamping) root["macroscale"] = stamping_json(*record.stamping);
   if (record.stamping && record.grid_error)
     root["macroscale"]["grid_error"] = grid_error_json(*record.grid_error);
+  for (const macroscale::LargestIndicator& indicator : record.indicators)
+    root["macroscale"]["indicators"][name_with_unit(indicator)] = indicator.value;
   if (record.failure) root["failure"] = failure_json(*record.failure, record.advice);
   return json_text(root);
 }

@@ -62,6 +62,13 @@ std::string pair(const std::string& left, const std::string& right) {
   return left.empty() && right.empty() ? "" : "<div class=\"pair\">\n" + left + right + "</div>\n";
 }
 
+std::string pairs(const std::vector<std::string>& figures) {
+  std::string out;
+  for (std::size_t k = 0; k < figures.size(); k += 2)
+    out += pair(figures[k], k + 1 < figures.size() ? figures[k + 1] : "");
+  return out;
+}
+
 std::string facts_table(const std::vector<Condition>& facts) {
   if (facts.empty()) return "";
   std::string out = "<table class=\"facts\">\n";

@@ -23,6 +23,8 @@ std::string section(std::string_view title, const std::string& body);
 std::string figure(const Canvas& picture, std::string_view caption);
 /// Two figures side by side.
 std::string pair(const std::string& left, const std::string& right);
+/// Figures two by two.
+std::string pairs(const std::vector<std::string>& figures);
 std::string facts_table(const std::vector<Condition>& facts);
 std::string list(const std::vector<std::string>& texts);
 /// First column text, the others numbers.

@@ -111,7 +111,7 @@ std::vector<Condition> cell_facts(const mesoscale::CellSummary& cell) {
       {"Contact fraction of one face at 0.05 mm depth", percent(cell.contact_area_fraction, 3)},
       {"Tow section", significant(1e6 * cell.tow_section_area, 4) + " mm²"},
       {"Thickness", significant(1e3 * cell.thickness, 4) + " mm"},
-      {"Of the sheet: tows, glass, voids",
+      {"Of the sheet: tows with their voids; glass; all voids",
        fmt::format("{}, {}, {}", percent(cell.tow_share, 3), percent(cell.glass_share, 3),
                    percent(std::max(cell.void_share, 0.0), 3))},
       {"Consolidated thickness", significant(1e3 * cell.consolidated_thickness, 3) + " mm"}};

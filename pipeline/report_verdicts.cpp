@@ -213,9 +213,11 @@ void overlap(Verdicts& out, const std::optional<mesoscale::TowBodies>& bodies) {
   if (!bodies || bodies->height_depth <= 0.0) return;
   out.add(
       Tone::attention,
-      fmt::format("Tows reach into each other by up to {} mm, {} mm³ a repeat: a section fuller than the "
-                  "lens overlaps with the tow whose path goes round it. lens and capped_lens do not.",
-                  significant(1e3 * bodies->height_depth, 2), significant(1e9 * bodies->height_volume, 3)));
+      fmt::format(
+          "Tows reach into each other by up to {} mm, {} mm³ a repeat: a section fuller than the "
+          "lens, or a half of it too flat for its path, overlaps with the tow that goes round it. lens and "
+          "capped_lens do not.",
+          significant(1e3 * bodies->height_depth, 2), significant(1e9 * bodies->height_volume, 3)));
 }
 
 void priors(Verdicts& out, const mesoscale::FabricProperties& fabric) {

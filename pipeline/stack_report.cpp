@@ -73,7 +73,7 @@ std::vector<Condition> facts(const mesoscale::StackSummary& s) {
       {"Plies", std::to_string(s.plies)},
       {"Thickness", significant(1e3 * s.thickness, 4) + " mm"},
       {"Crowns on crowns it would be", significant(1e3 * s.apart, 4) + " mm"},
-      {"Of the stack: tows with their voids; glass; voids in and between tows",
+      {"Of the stack: tows with their voids; glass; all voids",
        fmt::format("{}, {}, {}", percent(s.shares.tows), percent(s.shares.glass), percent(s.shares.voids))}};
   if (s.swelling > 1.0 + 1e-9)
     rows.push_back({"Tows thicker than in the lone ply", percent(s.swelling - 1.0)});

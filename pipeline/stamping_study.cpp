@@ -161,20 +161,6 @@ const std::vector<Column>& columns() {
   return all;
 }
 
-const char* word_of(CaseStatus status) {
-  switch (status) {
-    case CaseStatus::done:
-      return "done";
-    case CaseStatus::failed:
-      return "failed";
-    case CaseStatus::bad_input:
-      return "bad_input";
-    case CaseStatus::interrupted:
-      break;
-  }
-  return "interrupted";
-}
-
 std::string note_on_calibration(const StampingStudyFindings& findings) {
   double largest = 0.0;
   for (const StudiedStamping& stamping : findings.stampings)
@@ -194,7 +180,7 @@ void print(const StampingStudyFindings& findings) {
     fmt::print("{:<16}{:>10.6g}{:>8.4g}{:>11.2f}{:>11.2f}{:>12.4f}{:>11.3f}{:>11.3f}{}\n", s.model,
                s.binder_force, s.speed_scale, peak->force, degrees * peak->shear, 100.0 * peak->tow_strain,
                peak->friction, peak->shear_rate,
-               s.status == CaseStatus::done ? "" : std::string("  ") + word_of(s.status));
+               s.status == CaseStatus::done ? "" : "  " + name_of(s.status));
   }
   for (const SpeedSignature& s : speed_signatures(findings)) {
     const auto ratio = s.ratio();
@@ -286,7 +272,7 @@ std::string stamping_table_csv(const StampingStudyFindings& findings) {
   out += "\n";
   for (const StudiedStamping& s : findings.stampings) {
     out += fmt::format("{},{},{},{},{}", s.id, s.model, shortest(s.binder_force), shortest(s.speed_scale),
-                       word_of(s.status));
+                       name_of(s.status));
     const StudiedStep* peak = s.peak();
     for (const Column& column : columns()) out += "," + (peak ? shortest(column.value(s, *peak)) : "");
     out += "\n";
@@ -301,7 +287,7 @@ std::string stamping_table_h5(const StampingStudyFindings& findings) {
   for (const StudiedStamping& s : findings.stampings) {
     ids += s.id + "\n";
     models += s.model + "\n";
-    statuses += std::string(word_of(s.status)) + "\n";
+    statuses += name_of(s.status) + "\n";
     force.push_back(s.binder_force);
     scale.push_back(s.speed_scale);
   }
@@ -371,7 +357,7 @@ int study_stampings(const RunOptions& options, const Case& a_case) {
   for (const StudiedStamping& s : findings.stampings)
     if (s.status != CaseStatus::done) {
       std::cerr << fmt::format("heddle: {} {}: {}\n  cases/{} holds what it reached.\n", s.id,
-                               word_of(s.status), s.message, s.id);
+                               name_of(s.status), s.message, s.id);
       code = exit_failed;
     }
   return code;

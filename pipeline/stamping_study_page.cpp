@@ -170,19 +170,15 @@ std::string speed_section(const StampingStudyFindings& findings) {
                  "Largest tow strain at peak force over speed for each model, in per cent of that at V",
                  {"Tow strain, of that at V", "%"}, [](const StudiedStep& s) { return s.tow_strain; }, true),
              "Largest tow strain when the force is largest, in per cent of the same model at V."));
-  std::string curves;
-  int drawn = 0;
+  std::vector<std::string> curves;
   for (const StudyModel& model : findings.spec.models) {
     const Runs runs = over_speed(findings, model.name);
     if (runs.size() < 2) continue;
-    if (drawn % 2 == 0) curves += "<div class=\"pair\">\n";
-    curves += figure(force_chart_of(runs, "Punch force over the stroke for each speed, " + model.name,
-                                    [](const auto& run) { return speed_name(run.speed_scale); }),
-                     "Model " + model.name + ": force over the stroke.");
-    if (++drawn % 2 == 0) curves += "</div>\n";
+    curves.push_back(figure(force_chart_of(runs, "Punch force over the stroke for each speed, " + model.name,
+                                           [](const auto& run) { return speed_name(run.speed_scale); }),
+                            "Model " + model.name + ": force over the stroke."));
   }
-  if (drawn % 2 == 1) curves += "</div>\n";
-  return section("Punch speed", body + curves + speed_table(findings) + signature_table(findings));
+  return section("Punch speed", body + pairs(curves) + speed_table(findings) + signature_table(findings));
 }
 
 // ---- models against each other
@@ -210,25 +206,23 @@ std::string model_section(const StampingStudyFindings& findings) {
                                 : fmt::format("{:.4f}", (*a)->peak()->force / (*b)->peak()->force));
     }
   }
-  std::string charts;
-  for (std::size_t k = 0; k < scales.size(); ++k) {
+  std::vector<std::string> charts;
+  for (const double scale : scales) {
     Runs runs;
     for (const StudyModel& model : findings.spec.models)
       for (const StudiedStamping* run : over_speed(findings, model.name))
-        if (run->speed_scale == scales[k]) runs.push_back(run);
-    LineChart chart = half_chart("Punch force over the stroke for each model at " + speed_name(scales[k]),
+        if (run->speed_scale == scale) runs.push_back(run);
+    LineChart chart = half_chart("Punch force over the stroke for each model at " + speed_name(scale),
                                  {"Punch displacement", "mm"}, {"Punch force", "N"}, 130.0);
     for (const StudiedStamping* run : runs) chart.series.push_back(force_over_stroke(*run, run->model));
-    if (k % 2 == 0) charts += "<div class=\"pair\">\n";
-    charts += figure(draw(chart), "Every model at " + speed_name(scales[k]) + ".");
-    if (k % 2 == 1 || k + 1 == scales.size()) charts += "</div>\n";
+    charts.push_back(figure(draw(chart), "Every model at " + speed_name(scale) + "."));
   }
   std::vector<Condition> models;
   for (const StudyModel& model : findings.spec.models)
     models.push_back({model.name, model.assignments.empty()
                                       ? "the case as given"
                                       : fmt::format("{}", fmt::join(model.assignments, "; "))});
-  return section("Models against each other", facts_table(models) + charts + table(head, rows));
+  return section("Models against each other", facts_table(models) + pairs(charts) + table(head, rows));
 }
 
 }  // namespace

@@ -58,12 +58,13 @@ TEST_CASE("a row of measurements has SI numbers, its line, and defaults where th
 }
 
 TEST_CASE("every fault of a table of measurements is named with its line", "[csv][wrong input]") {
-  const Result all = read("rest_min,rest_s,rest_s,weather\n1,nan,2,sun\n1,2\n");
+  const Result all = read("rest_min,rest_s,rest_s,day_name\n1,nan,2,sun\n1,2\n");
   CHECK(ids(all.problems) ==
         Ids{"csv.cells", "test.unknown", "test.unknown", "test.missing", "test.twice", "test.number"});
   CHECK(all.problems[0].line == 3);
   CHECK(all.problems[1].key == "rest_min");
   CHECK(all.problems[1].way_out == "Convert its numbers and call it rest_s: the unit stands in the name.");
+  // day_id has no unit that day_name could be another of.
   CHECK(all.problems[2].way_out == "Known columns: day_id, speed_mm_s, rest_s.");
   CHECK(all.problems[3].key == "speed_mm_s");
   CHECK(all.problems[3].rule == "must be a column of a table of pulls");
