@@ -58,7 +58,8 @@ std::vector<Line> lines_of(const CsvTable& table, TableProblems& problems) {
   if (!has_column(table, "force_measured_N"))
     for (Line& line : lines) line.force = line.other_force;
   if (!has_column(table, "force_measured_N") && !has_column(table, "pull_force_N"))
-    problems.add(rules.missing, "force_measured_N or pull_force_N", "", "must be a column of the table",
+    problems.add(rules.missing, "force_measured_N or pull_force_N", "",
+                 fmt::format("must be a column of {}", rules.what),
                  fmt::format("Known columns: {}.", names_of(columns)), table.header.line);
   if (lines.empty())
     problems.add("friction.coupons.empty"_rule, "data", "", "must hold at least one pull",
@@ -184,20 +185,31 @@ void check_line(TableProblems& problems, const Line& line) {
                    "Write it in degC.", line.line);
 }
 
-void check_force(TableProblems& problems, const CouponRow& row, int faces) {
-  const double force = *row.pull.measured_force;
-  if (!(force > 0.0 && std::isfinite(force)))
-    return problems.add("friction.coupons.force"_rule, "force_measured_N",
-                        std::isnan(force) ? "" : write_quantity(force, "N"), "must be a positive force",
-                        "Fill in the measured pull force, or leave the line out.", row.line);
-  if (!(row.pull.normal_force > 0.0)) return;  // said already
-  const double mu = measured_coefficient(row, faces);
-  if (mu > 5.0 || mu < 5e-3)
-    problems.add("friction.coupons.unit.force"_rule, "force_measured_N", write_quantity(force, "N"),
-                 fmt::format("gives mu = F/({} N) = {:.3g}, which no fabric has; is one of the two forces in "
-                             "kN or in kg?",
-                             faces, mu),
-                 "Write pull force and normal force both in N.", row.line);
+/// @param column  in which the table has them
+void check_forces(TableProblems& problems, const std::vector<CouponRow>& rows, int faces,
+                  std::string_view column) {
+  std::vector<const CouponRow*> odd;
+  for (const CouponRow& row : rows) {
+    const double force = *row.pull.measured_force;
+    if (!(force > 0.0 && std::isfinite(force))) {
+      problems.add("friction.coupons.force"_rule, column, std::isnan(force) ? "" : write_quantity(force, "N"),
+                   "must be a positive force", "Fill in the measured pull force, or leave the line out.",
+                   row.line);
+      continue;
+    }
+    if (!(row.pull.normal_force > 0.0)) continue;  // said already
+    const double mu = measured_coefficient(row, faces);
+    if (mu > 5.0 || mu < 5e-3) odd.push_back(&row);
+  }
+  if (odd.empty()) return;
+  // A unit is the table's: once, however long it is.
+  const CouponRow& first = *odd.front();
+  problems.add("friction.coupons.unit.force"_rule, column, write_quantity(*first.pull.measured_force, "N"),
+               fmt::format("gives mu = F/({} N) = {:.3g}, which no fabric has{}; is one of the two forces in "
+                           "kN or in kg?",
+                           faces, measured_coefficient(first, faces),
+                           odd.size() > 1 ? fmt::format(" (so do {} forces more)", odd.size() - 1) : ""),
+               "Write pull force and normal force both in N.", first.line);
 }
 
 /// A piece of fabric with several lines needs the slip of each, some of it.
@@ -262,7 +274,8 @@ double measured_coefficient(const CouponRow& row, int faces) {
 
 CouponData parse_coupons(std::string_view text, const std::string& file, const CouponReduction& reduction) {
   TableProblems problems{file};
-  const std::vector<Line> lines = lines_of(parse_csv(text, file), problems);
+  const CsvTable table = parse_csv(text, file);
+  const std::vector<Line> lines = lines_of(table, problems);
   problems.throw_if_any();
   for (const Line& line : lines) check_line(problems, line);
 
@@ -287,11 +300,12 @@ CouponData parse_coupons(std::string_view text, const std::string& file, const C
       row.condition = conditions_seen.of(condition_of(first));
       row.day = days.of(first.day);
       row.sample = data.samples.size();
-      check_force(problems, row, reduction.faces);
       data.rows.push_back(std::move(row));
     }
     data.samples.push_back(first.sample.empty() ? data.rows.back().pull.name : first.sample);
   }
+  check_forces(problems, data.rows, reduction.faces,
+               has_column(table, "force_measured_N") ? "force_measured_N" : "pull_force_N");
   problems.throw_if_any();
   data.conditions = conditions_seen.count();
   data.notes = odd_looks(data.rows);

@@ -109,6 +109,12 @@ TEST_CASE("a table of coupons is refused with every problem and its line",
   CHECK(problems_of(short_header + "16,1500,85,180,0.843\n", &words) == Ids{"friction.coupons.unit.force"});
   CHECK(words.find("kN") != std::string::npos);
   CHECK(problems_of(short_header + "16,1.5,85,180,843\n") == Ids{"friction.coupons.unit.force"});
+  // A table in kN is one fault, however long, in the column it has.
+  CHECK(problems_of("velocity_mm_s,normal_force_N,tool_temperature_C,fabric_temperature_C,pull_force_N\n"
+                    "16,1500,85,180,0.843\n8,1500,85,180,0.8\n4,1500,85,180,0.7\n",
+                    &words) == Ids{"friction.coupons.unit.force"});
+  CHECK(words.find("pull_force_N (line 2)") != std::string::npos);
+  CHECK(words.find("so do 2 forces more") != std::string::npos);
   CHECK(problems_of(short_header + "16,1500,358.15,453.15,843\n") ==
         Ids{"friction.coupons.unit.temperature", "friction.coupons.unit.temperature"});
   CHECK(problems_of(header +
