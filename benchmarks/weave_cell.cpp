@@ -32,14 +32,14 @@ double best_cpu(const std::function<void()>& work) {
 int main() {
   const std::filesystem::path file = std::filesystem::temp_directory_path() / "heddle_benchmark_cell.vti";
   UnitCell cell;
-  VoxelLabels voxels;
+  solid::CellVoxels voxels;
   Penetration overlap{};
   std::string bytes;
   const double geometry =
       best_cpu([&] { cell = unit_cell(fabric_geometry(WeaveSpec{}, CellState::as_woven), 0.0); });
-  const double labels = best_cpu([&] { voxels = tow_labels(cell, 50, 100); });
+  const double labels = best_cpu([&] { voxels = solid::cell_voxels(cell, 50, 100); });
   const double penetrates = best_cpu([&] { overlap = penetration(cell, 50); });
-  // What the solver takes: volume shares, tow directions and normals of interfaces as well.
+  // What the solver takes: normals of interfaces as well.
   solid::VoxelCell sampled;
   const double sampling =
       best_cpu([&] { sampled = solid::sample(cell, 2.0 * cell.crown(), {.per_pitch = 50, .layers = 100}); });
@@ -49,15 +49,16 @@ int main() {
   std::filesystem::remove(file);
   const double all = geometry + labels + penetrates + sampling + packing + writing;
   fmt::print(
-      "plain weave, {} voxels: geometry {:.2g} s, labels {:.3f} s, overlap {:.3f} s ({:.2g} m^3), shares and "
-      "directions {:.3f} s, packing "
+      "plain weave, {} voxels: geometry {:.2g} s, labels, shares and directions {:.3f} s, overlap {:.3f} s "
+      "({:.2g} m^3), "
+      "what the solver takes {:.3f} s, packing "
       "{:.3f} s, "
       "writing {:.4f} s\n",
-      voxels.labels.size(), geometry, labels, penetrates, overlap.volume, sampling, packing, writing);
+      voxels.fraction.size(), geometry, labels, penetrates, overlap.volume, sampling, packing, writing);
   fmt::print("in all {:.3f} CPU s and {:.3f} MB; {:.1f} Mvoxel/s, {:.0f} times the bare write\n", all,
-             megabytes, 1e-6 * static_cast<double>(voxels.labels.size()) / all, all / writing);
+             megabytes, 1e-6 * static_cast<double>(voxels.fraction.size()) / all, all / writing);
   benchmark::append_row(
       "weave_cell", "date,voxels,cpu_s,MB,labels_cpu_s,sampling_cpu_s,packing_cpu_s,over_bare_write",
-      fmt::format("{},{},{:.3f},{:.3f},{:.3f},{:.3f},{:.3f},{:.0f}", benchmark::today(), voxels.labels.size(),
-                  all, megabytes, labels, sampling, packing, all / writing));
+      fmt::format("{},{},{:.3f},{:.3f},{:.3f},{:.3f},{:.3f},{:.0f}", benchmark::today(),
+                  voxels.fraction.size(), all, megabytes, labels, sampling, packing, all / writing));
 }

@@ -47,6 +47,8 @@ template <class Number>
 hid_t memory_type() {
   if constexpr (std::is_same_v<Number, double>) return H5T_NATIVE_DOUBLE;
   if constexpr (std::is_same_v<Number, int>) return H5T_NATIVE_INT;
+  if constexpr (std::is_same_v<Number, float>) return H5T_NATIVE_FLOAT;
+  if constexpr (std::is_same_v<Number, std::uint16_t>) return H5T_NATIVE_UINT16;
   if constexpr (std::is_same_v<Number, char>) return H5T_NATIVE_CHAR;
 }
 
@@ -55,6 +57,8 @@ template <class Number>
 hid_t file_type() {
   if constexpr (std::is_same_v<Number, double>) return H5T_IEEE_F64LE;
   if constexpr (std::is_same_v<Number, int>) return H5T_STD_I32LE;
+  if constexpr (std::is_same_v<Number, float>) return H5T_IEEE_F32LE;
+  if constexpr (std::is_same_v<Number, std::uint16_t>) return H5T_STD_U16LE;
   if constexpr (std::is_same_v<Number, char>) return H5T_STD_I8LE;
 }
 
@@ -73,7 +77,7 @@ struct InMemory {
 };
 
 void write_data_set(hid_t file, const std::string& path, hid_t file_type, hid_t memory_type,
-                    const void* values, std::vector<hsize_t> shape) {
+                    const void* values, std::vector<hsize_t> shape, bool packed = false) {
   const std::string what = fmt::format("data set {} cannot be written", path);
   // An extent of zero needs no storage and HDF5 takes it as it is.
   const Id space(H5Screate_simple(static_cast<int>(shape.size()), shape.data(), nullptr), H5Sclose, what);
@@ -81,6 +85,14 @@ void write_data_set(hid_t file, const std::string& path, hid_t file_type, hid_t 
   const Id creation(H5Pcreate(H5P_DATASET_CREATE), H5Pclose, what);
   demand(H5Pset_create_intermediate_group(links, 1) >= 0, what);
   demand(H5Pset_obj_track_times(creation, false) >= 0, what);
+  if (packed) {
+    std::vector<hsize_t> plane = shape;
+    plane.front() = 1;
+    // Level 1: the next levels cost several times as long for a few per cent of size.
+    demand(H5Pset_chunk(creation, static_cast<int>(plane.size()), plane.data()) >= 0 &&
+               H5Pset_shuffle(creation) >= 0 && H5Pset_deflate(creation, 1) >= 0,
+           what);
+  }
   const Id data(H5Dcreate2(file, path.c_str(), file_type, space, links, creation, H5P_DEFAULT), H5Dclose,
                 what);
   demand(H5Dwrite(data, memory_type, H5S_ALL, H5S_ALL, H5P_DEFAULT, values) >= 0, what);
@@ -104,14 +116,14 @@ Hdf5Writer::~Hdf5Writer() {
 
 template <class Number>
 void Hdf5Writer::write_numbers(const std::string& path, std::span<const Number> values,
-                               std::vector<std::size_t> shape) {
+                               std::vector<std::size_t> shape, Layout layout) {
   if (shape.empty()) shape = {values.size()};
   const std::size_t expected =
       std::accumulate(shape.begin(), shape.end(), std::size_t{1}, std::multiplies<>());
   if (expected != values.size())
     throw std::logic_error(fmt::format("{}: {} values for a shape of {}", path, values.size(), expected));
   write_data_set(file_, path, file_type<Number>(), memory_type<Number>(), values.data(),
-                 {shape.begin(), shape.end()});
+                 {shape.begin(), shape.end()}, layout == Layout::packed);
 }
 
 void Hdf5Writer::write(const std::string& path, std::span<const double> values,
@@ -120,6 +132,14 @@ void Hdf5Writer::write(const std::string& path, std::span<const double> values,
 }
 void Hdf5Writer::write(const std::string& path, std::span<const int> values, std::vector<std::size_t> shape) {
   write_numbers(path, values, std::move(shape));
+}
+void Hdf5Writer::write_packed(const std::string& path, std::span<const float> values,
+                              std::vector<std::size_t> shape) {
+  write_numbers(path, values, std::move(shape), Layout::packed);
+}
+void Hdf5Writer::write_packed(const std::string& path, std::span<const std::uint16_t> values,
+                              std::vector<std::size_t> shape) {
+  write_numbers(path, values, std::move(shape), Layout::packed);
 }
 
 void Hdf5Writer::write(const std::string& path, std::string_view text) {

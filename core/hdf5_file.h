@@ -30,6 +30,11 @@ class Hdf5Writer {
   /// @param shape  row-major; its product is values.size(); empty: one dimension
   void write(const std::string& path, std::span<const double> values, std::vector<std::size_t> shape = {});
   void write(const std::string& path, std::span<const int> values, std::vector<std::size_t> shape = {});
+  /// Fields of many numbers, cut into planes of the first dimension and packed by zlib.
+  /// @param shape  row-major, no extent zero
+  void write_packed(const std::string& path, std::span<const float> values, std::vector<std::size_t> shape);
+  void write_packed(const std::string& path, std::span<const std::uint16_t> values,
+                    std::vector<std::size_t> shape);
   void write(const std::string& path, double value) { write(path, std::span(&value, 1)); }
   void write(const std::string& path, int value) { write(path, std::span(&value, 1)); }
   /// UTF-8 text of any length.
@@ -40,8 +45,10 @@ class Hdf5Writer {
   std::string finish();
 
  private:
+  enum class Layout { whole, packed };
   template <class Number>
-  void write_numbers(const std::string& path, std::span<const Number> values, std::vector<std::size_t> shape);
+  void write_numbers(const std::string& path, std::span<const Number> values, std::vector<std::size_t> shape,
+                     Layout layout = Layout::whole);
   std::int64_t file_;
 };
 
@@ -53,7 +60,8 @@ class Hdf5Reader {
   Hdf5Reader(const Hdf5Reader&) = delete;
   Hdf5Reader& operator=(const Hdf5Reader&) = delete;
 
-  /// Each throws Hdf5Error, naming the path, if there is no such data set or it holds another type.
+  /// Each throws Hdf5Error, naming the path, if there is no such data set or it holds another type. Numbers
+  /// of any width are read.
   std::vector<double> doubles(const std::string& path) const;
   std::vector<int> integers(const std::string& path) const;
   double number(const std::string& path) const;

@@ -26,6 +26,7 @@
 #include "pipeline/stages.h"
 #include "pipeline/stamping_stage.h"
 #include "pipeline/threads.h"
+#include "pipeline/voxel_export.h"
 
 namespace heddle::pipeline {
 
@@ -71,7 +72,9 @@ void run_cell(const Case& a_case, RunFolder& folder, const Cache& cache, Finding
   folder.write("mesoscale/picture_frame.csv", picture_frame_csv(fabric));
   folder.write("mesoscale/bias_extension.csv", bias_extension_csv(fabric));
   folder.write("mesoscale/tows.stl", tows_stl(findings.pictures->tows));
-  folder.write("mesoscale/cell.vti", vti(findings.pictures->voxels));
+  const mesoscale::solid::CellVoxels voxels = weave_voxels(*a_case.cell);
+  folder.write("mesoscale/cell.vti", vti(voxels));
+  folder.write("mesoscale/cell.h5", voxels_hdf5(voxels));
   if (a_case.cell->stack.plies > 1) {
     findings.stack = stack_view(*a_case.cell);
     folder.write("mesoscale/nesting.csv", nesting_csv(*findings.stack));

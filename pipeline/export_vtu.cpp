@@ -12,6 +12,7 @@
 
 #include "pipeline/outputs.h"
 #include "pipeline/painter.h"
+#include "pipeline/voxel_export.h"
 
 namespace heddle::pipeline {
 
@@ -251,23 +252,22 @@ std::string pvd(std::span<const SeriesFrame> frames) {
   return out + "  </Collection>\n</VTKFile>\n";
 }
 
-std::string vti(const mesoscale::VoxelLabels& voxels) {
-  std::size_t expected = 1;
-  for (const int count : voxels.count) expected *= static_cast<std::size_t>(std::max(count, 0));
-  if (expected != voxels.labels.size()) {
-    throw OutputError(fmt::format("voxel file: {} labels for {} x {} x {} voxels", voxels.labels.size(),
-                                  voxels.count[0], voxels.count[1], voxels.count[2]));
-  }
+std::string vti(const mesoscale::solid::CellVoxels& voxels) {
+  check_voxels(voxels);
+  const mesoscale::VoxelLabels& grid = voxels.grid;
   AppendedData data;
-  const std::string extent = fmt::format("0 {} 0 {} 0 {}", voxels.count[0], voxels.count[1], voxels.count[2]);
+  const std::string extent = fmt::format("0 {} 0 {} 0 {}", grid.count[0], grid.count[1], grid.count[2]);
   const auto triple = [](const std::array<double, 3>& v) {
     return shortest(v[0]) + " " + shortest(v[1]) + " " + shortest(v[2]);
   };
   std::string body = fmt::format(
       "  <ImageData WholeExtent=\"{0}\" Origin=\"{1}\" Spacing=\"{2}\">\n    <Piece Extent=\"{0}\">\n",
-      extent, triple(voxels.origin), triple(voxels.spacing));
-  body += "      <PointData/>\n      <CellData Scalars=\"label\">\n" +
-          array_element("UInt16", "label", 1, data.add(bytes_of(voxels.labels))) + "      </CellData>\n";
+      extent, triple(grid.origin), triple(grid.spacing));
+  body += "      <PointData/>\n      <CellData Scalars=\"label\" Vectors=\"tow_direction\">\n" +
+          array_element("UInt16", "label", 1, data.add(bytes_of(grid.labels))) +
+          array_element("Float32", "tow_fraction", 1, data.add(bytes_of(voxels.fraction))) +
+          array_element("Float32", "tow_direction", 3, data.add(bytes_of(voxels.direction))) +
+          "      </CellData>\n";
   body += "    </Piece>\n  </ImageData>\n";
   return file_of("ImageData", body, data);
 }

@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "macroscale/stamping.h"
-#include "mesoscale/pictures.h"
+#include "mesoscale/solid/sampler.h"
 
 /// Files for ParaView and VTK: XML with the numbers appended raw and compressed by zlib.
 namespace heddle::pipeline {
@@ -49,8 +49,8 @@ struct SeriesFrame {
 /// A .pvd file: the frames of a series in order of time.
 std::string pvd(std::span<const SeriesFrame> frames);
 
-/// A .vti file (image data), one label a voxel.
-/// @throws OutputError  if the number of labels is not the number of voxels
-std::string vti(const mesoscale::VoxelLabels& voxels);
+/// A .vti file (image data): `label`, `tow_fraction` and `tow_direction` of each voxel.
+/// @throws OutputError  if there are not as many of each as voxels
+std::string vti(const mesoscale::solid::CellVoxels& voxels);
 
 }  // namespace heddle::pipeline

@@ -117,12 +117,7 @@ void write_pictures(Hdf5Writer& file, const WeavePictures& pictures) {
   for (const Triangle& triangle : pictures.tows)
     for (const auto& corner : triangle) corners.insert(corners.end(), corner.begin(), corner.end());
   file.write("/tows", std::span<const double>(corners), {pictures.tows.size(), 3, 3});
-  const auto& voxels = pictures.voxels;
-  file.write("/voxels/count", std::vector<int>(voxels.count.begin(), voxels.count.end()));
-  file.write("/voxels/origin", std::span<const double>(voxels.origin));
-  file.write("/voxels/spacing", std::span<const double>(voxels.spacing));
   write_row(file, "/bodies", body_members(pictures.bodies));
-  file.write("/voxels/labels", std::vector<int>(voxels.labels.begin(), voxels.labels.end()));
 }
 
 WeavePictures read_pictures(const Hdf5Reader& file) {
@@ -150,16 +145,6 @@ WeavePictures read_pictures(const Hdf5Reader& file) {
   for (std::size_t i = 0; i < 9 * pictures.tows.size(); ++i)
     pictures.tows[i / 9][i / 3 % 3][i % 3] = corners[i];
   read_row(file, "/bodies", body_members(pictures.bodies));
-  auto& voxels = pictures.voxels;
-  const std::vector<int> count = file.integers("/voxels/count"), labels = file.integers("/voxels/labels");
-  if (count.size() != 3) throw Hdf5Error("/voxels/count has the wrong length");
-  std::copy(count.begin(), count.end(), voxels.count.begin());
-  const auto triple = [&](const char* path, std::array<double, 3>& values) {
-    fill(std::tie(values[0], values[1], values[2]), file.doubles(path), 0, path);
-  };
-  triple("/voxels/origin", voxels.origin);
-  triple("/voxels/spacing", voxels.spacing);
-  for (const int label : labels) voxels.labels.push_back(static_cast<std::uint16_t>(label));
   return pictures;
 }
 

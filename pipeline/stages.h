@@ -9,6 +9,7 @@
 #include "macroscale/stamping.h"
 #include "mesoscale/cell_spec.h"
 #include "mesoscale/pictures.h"
+#include "mesoscale/solid/sampler.h"
 #include "pipeline/case.h"
 #include "pipeline/outputs.h"
 
@@ -46,10 +47,12 @@ struct WeavePictures {
   mesoscale::HeightField height;
   std::vector<mesoscale::Outline> section;
   std::vector<Triangle> tows;
-  mesoscale::VoxelLabels voxels;  ///< 32 a pitch, 32 through the thickness
   mesoscale::TowBodies bodies;
 };
 WeavePictures weave_pictures(const mesoscale::CellSpec& spec);
+
+/// Voxels of one repeat, 32 a pitch where it has up to eight tows, fewer of larger ones, and 32 through.
+mesoscale::solid::CellVoxels weave_voxels(const mesoscale::CellSpec& spec);
 
 /// Size of a blank for titles: "320 x 320 mm", "round 300 mm".
 std::string blank_in_words(const macroscale::BlankSpec& blank);

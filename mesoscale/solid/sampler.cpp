@@ -105,6 +105,28 @@ class Sampler {
     return collect(keys);
   }
 
+  void fill(CellVoxels& voxels) {
+    tbb::parallel_for(0, count_[1], [&](int j) { fill_shares(j); });
+    voxels.fraction.resize(this->voxels());
+    voxels.direction.assign(3 * this->voxels(), 0.0F);
+    tbb::parallel_for(0, count_[1], [&](int j) {
+      for (int i = 0; i < count_[0]; ++i) {
+        const std::vector<int> bins = bins_over(i, j);
+        for (int k = 0; k < count_[2]; ++k) {
+          const std::size_t voxel = at(i, j, k);
+          const double warp = share(0, voxel), weft = share(1, voxel);
+          voxels.fraction[voxel] = static_cast<float>(warp + weft);
+          if (warp + weft == 0.0) continue;
+          const bool is_weft = weft > warp;
+          const Eigen::Vector3d along =
+              direction(is_weft, bin_of_most(is_weft ? 1 : 0, voxel, bins)).normalized();
+          for (int axis = 0; axis < 3; ++axis)
+            voxels.direction[3 * voxel + static_cast<std::size_t>(axis)] = static_cast<float>(along[axis]);
+        }
+      }
+    });
+  }
+
  private:
   std::size_t voxels() const { return static_cast<std::size_t>(count_[0]) * count_[1] * count_[2]; }
   std::size_t at(int i, int j, int k) const {
@@ -301,6 +323,13 @@ VoxelCell sample(const PlyStack& stack, const SamplerOptions& options) {
   for (std::size_t k = 0; k < stack.height.size(); ++k)
     plies.push_back({stack.shift[k][0], stack.shift[k][1], stack.middle(k)});
   return Sampler(stack.ply, std::move(plies), stack.thickness, options).run();
+}
+
+CellVoxels cell_voxels(const UnitCell& cell, int per_pitch, int through) {
+  CellVoxels voxels;
+  voxels.grid = tow_labels(cell, per_pitch, through);
+  Sampler(cell, {PlacedPly{}}, 2.0 * cell.crown(), {.per_pitch = per_pitch, .layers = through}).fill(voxels);
+  return voxels;
 }
 
 }  // namespace heddle::mesoscale::solid

@@ -2,6 +2,7 @@
 
 #include "mesoscale/cell.h"
 #include "mesoscale/nesting.h"
+#include "mesoscale/pictures.h"
 #include "mesoscale/solid/voxel_cell.h"
 
 namespace heddle::mesoscale::solid {
@@ -32,5 +33,18 @@ VoxelCell sample(const UnitCell& cell, double thickness, const SamplerOptions& o
 /// The same of plies on one another, `layers` voxels over each ply's share of the thickness. In a voxel that
 /// holds warps (wefts) of two plies, all have the direction of those that fill more of it.
 VoxelCell sample(const PlyStack& stack, const SamplerOptions& options);
+
+/// One repeat of a weave for people and other codes to look at: whose tow, how much of it, and where it runs.
+struct CellVoxels {
+  VoxelLabels grid;             ///< tow at the middle of each voxel
+  std::vector<float> fraction;  ///< of the voxel's volume that is tow [-], by columns as in `sample`
+  std::vector<float>
+      direction;  ///< three a voxel: unit vector along the tow that fills more; 0 where none does
+};
+
+/// @param cell       unsheared
+/// @param per_pitch  voxels along one pitch, each way
+/// @param through    voxels from crown to crown
+CellVoxels cell_voxels(const UnitCell& cell, int per_pitch, int through);
 
 }  // namespace heddle::mesoscale::solid

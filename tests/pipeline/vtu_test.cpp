@@ -142,22 +142,33 @@ TEST_CASE("arrays of any length are cut into blocks the format allows", "[vtu]")
   // Just below, at and just above one and two blocks of 32768 bytes, and none at all.
   for (const int voxels : {0, 1, 16383, 16384, 16385, 32768, 32769}) {
     CAPTURE(voxels);
-    heddle::mesoscale::VoxelLabels labels{{voxels, 1, 1}, {}, {1, 1, 1}, {}};
-    for (int i = 0; i < voxels; ++i) labels.labels.push_back(static_cast<std::uint16_t>(7 * i % 65536));
-    const VtkFile file = parse(vti(labels));
-    CHECK(numbers<std::uint16_t>(file, "label") == labels.labels);
+    heddle::mesoscale::solid::CellVoxels cell{{{voxels, 1, 1}, {}, {1, 1, 1}, {}}, {}, {}};
+    cell.fraction.resize(static_cast<std::size_t>(voxels));
+    cell.direction.resize(3 * static_cast<std::size_t>(voxels));
+    for (int i = 0; i < voxels; ++i) cell.grid.labels.push_back(static_cast<std::uint16_t>(7 * i % 65536));
+    const VtkFile file = parse(vti(cell));
+    CHECK(numbers<std::uint16_t>(file, "label") == cell.grid.labels);
     CHECK(file.data_read == file.data_size);
   }
 }
 
-TEST_CASE("voxel labels carry the frame of the cell, x fastest", "[vtu]") {
-  heddle::mesoscale::VoxelLabels voxels{
-      {3, 2, 1}, {0.5e-3, 0.0, -1e-3}, {1e-4, 2e-4, 3e-4}, {0, 1, 2, 3, 4, 5}};
+TEST_CASE("voxels carry the frame of the cell, x fastest", "[vtu]") {
+  heddle::mesoscale::solid::CellVoxels voxels{
+      {{3, 2, 1}, {0.5e-3, 0.0, -1e-3}, {1e-4, 2e-4, 3e-4}, {0, 1, 2, 3, 4, 5}},
+      {0.0F, 0.25F, 1.0F, 0.5F, 0.1F, 0.9F},
+      std::vector<float>(18, 0.5F)};
+  voxels.direction[4] = -1.0F;
   const VtkFile file = parse(vti(voxels));
   CHECK_THAT(file.xml, Contains("WholeExtent=\"0 3 0 2 0 1\"") && Contains("Origin=\"0.0005 0 -0.001\"") &&
                            Contains("Spacing=\"0.0001 0.0002 0.0003\""));
-  CHECK(numbers<std::uint16_t>(file, "label") == voxels.labels);
-  voxels.labels.pop_back();
+  CHECK(numbers<std::uint16_t>(file, "label") == voxels.grid.labels);
+  CHECK(numbers<float>(file, "tow_fraction") == voxels.fraction);
+  CHECK(numbers<float>(file, "tow_direction") == voxels.direction);
+  voxels.direction.pop_back();
+  CHECK_THROWS_WITH(vti(voxels), Contains("17 components of tow directions for 3 x 2 x 1 voxels"));
+  voxels.fraction.pop_back();
+  CHECK_THROWS_WITH(vti(voxels), Contains("5 tow fractions for 3 x 2 x 1 voxels"));
+  voxels.grid.labels.pop_back();
   CHECK_THROWS_WITH(vti(voxels), Contains("5 labels for 3 x 2 x 1 voxels"));
 }
 
