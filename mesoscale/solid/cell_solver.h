@@ -27,21 +27,24 @@ struct ElasticCell {
   std::size_t voxels() const { return static_cast<std::size_t>(count[0]) * count[1] * count[2]; }
 };
 
-/// Products by which the results are put together, over all nodes: of load case a and b.
-Matrix6 gram(const Field& a, const Field& b, std::size_t plane);
+/// Products by which the results are put together, over all nodes: row i, column j is of load case i of a and
+/// j of b. Of two load cases the first two rows and columns, the others are zero.
+Matrix6 gram(const Field& a, const Field& b, std::size_t plane, int cases);
 
 struct SolverOptions {
   /// Of the residual in the norm of the preconditioner, against the first one. Stiffness is an energy, whose
   /// error is the square of this.
   double tolerance = 1e-6;
   int max_iterations = 1000;
+  /// Load cases side by side: all six (loads), or two (pair_of_loads) in 0.4 of the memory and more time.
+  int cases = loads;
 };
 
 struct SolverSummary {
   bool converged = false;
-  std::string reason;                    ///< why it stopped
-  std::array<int, loads> iterations{};   ///< of each load case
-  std::array<double, loads> residual{};  ///< against the first one [-]
+  std::string reason;                   ///< why it stopped
+  std::array<int, loads> iterations{};  ///< of each load case
+  CaseNumbers residual{};               ///< against the first one [-]
   int most_iterations() const;
 };
 
@@ -58,15 +61,17 @@ struct LayerGroups {
 class CellSolver {
  public:
   /// @param reference  stiffness of the homogeneous cell [Pa]
+  /// @param cases      side by side in its fields: loads or pair_of_loads
   /// @throws NumericalError  if the reference is not positive definite
-  CellSolver(const ElasticCell& cell, Faces faces, const Matrix6& reference);
+  CellSolver(const ElasticCell& cell, Faces faces, const Matrix6& reference, int cases = loads);
 
+  int cases() const { return cases_; }
   int planes() const { return planes_; }
   std::size_t plane() const { return plane_; }  ///< doubles of a node plane of a field
   Field field() const;                          ///< zeros
 
   /// K u. @return  u . K u of each load case
-  std::array<double, loads> multiply(const Field& u, Field& force) const;
+  CaseNumbers multiply(const Field& u, Field& force) const;
 
   /// K u = force.
   /// @param scale  an energy of each load case [J] to judge rounding by: a residual whose energy is below
@@ -74,7 +79,7 @@ class CellSolver {
   /// @param force  in: right hand side, whose sum is zero; out: what is left of it
   /// @param u      out: displacements
   /// @throws NumericalError  if an energy is not finite
-  SolverSummary solve(Field& force, Field& u, const std::array<double, loads>& scale,
+  SolverSummary solve(Field& force, Field& u, const CaseNumbers& scale,
                       const SolverOptions& options = {}) const;
 
   std::size_t memory() const;  ///< of the four fields, tables and factors [byte]
@@ -98,11 +103,12 @@ class CellSolver {
 
  private:
   template <class Prepare>
-  std::array<double, loads> add_product(const Field& u, Field& force, const Prepare& prepare) const;
-  std::array<double, loads> precondition(const Field& residual, Field& z) const;
+  CaseNumbers add_product(const Field& u, Field& force, const Prepare& prepare) const;
+  CaseNumbers precondition(const Field& residual, Field& z) const;
 
   ElasticCell cell_;
   Faces faces_;
+  int cases_;
   int planes_;
   std::size_t plane_;
   std::vector<ElementTable> tables_;

@@ -9,8 +9,13 @@
 
 namespace heddle::mesoscale::solid {
 
-/// Load cases that are solved side by side: six strains, or three strains and three curvatures.
+/// Load cases: six strains, or three strains and three curvatures. They are solved side by side, all of them,
+/// or two at a time in 0.4 of the memory.
 inline constexpr int loads = 6;
+inline constexpr int pair_of_loads = 2;
+
+/// A number of each load case that is solved side by side; of two, the first two.
+using CaseNumbers = std::array<double, loads>;
 
 /// An eight-node element with 2 x 2 x 2 Gauss points and one stiffness, in the form the matrix-free product
 /// wants it.
@@ -44,8 +49,8 @@ std::vector<ElementTable> element_tables(std::span<const Matrix6> stiffness, con
 /// at (a, b, c) of the voxel; row 3 node + component [N/m].
 Eigen::Matrix<double, 24, 24> element_matrix(const Matrix6& stiffness, const VoxelEdges& edges);
 
-/// One layer of voxels between two planes of nodes, periodic in x and y. Node planes hold loads doubles for
-/// each of three components for each node, x fastest.
+/// One layer of voxels between two planes of nodes, periodic in x and y. Node planes hold a double of each
+/// load case for each of three components for each node, x fastest.
 struct VoxelLayer {
   int nx, ny;
   const double* lower;  ///< displacements of the plane below
@@ -54,14 +59,15 @@ struct VoxelLayer {
   double* force_upper;
   const std::uint16_t* material;  ///< of nx x ny voxels
   const ElementTable* tables;
+  int cases = loads;  ///< or pair_of_loads
 };
 
 /// Adds K u of one layer and returns the energy product u . K u of each load case.
 /// Picks AVX-512 or AVX2 at run time.
-std::array<double, loads> apply_layer(const VoxelLayer& layer);
+CaseNumbers apply_layer(const VoxelLayer& layer);
 
 enum class Instructions { plain, avx2, avx512 };
 Instructions best_instructions();  ///< that this processor has; asked once
-std::array<double, loads> apply_layer(const VoxelLayer& layer, Instructions instructions);
+CaseNumbers apply_layer(const VoxelLayer& layer, Instructions instructions);
 
 }  // namespace heddle::mesoscale::solid

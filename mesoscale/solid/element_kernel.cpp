@@ -11,8 +11,9 @@ namespace {
 
 // The four nodes of a face across x: sums over them with the signs of 1, eta, zeta, eta zeta.
 // Mode m of component i stands at 3 m + i.
+template <int cases>
 struct Face {
-  Pack mode[12];
+  Pack<cases> mode[12];
 };
 
 // Node rows at (eta, zeta) = (-,-), (+,-), (-,+), (+,+).
@@ -21,12 +22,13 @@ struct Rows {
   double* f[4];
 };
 
-HEDDLE_INLINE void gather(Face& face, const Rows& rows, std::ptrdiff_t at) {
+template <int cases>
+HEDDLE_INLINE void gather(Face<cases>& face, const Rows& rows, std::ptrdiff_t at) {
 #pragma GCC unroll 12
   for (int i = 0; i < 3; ++i) {
-    Pack u[4], low_sum, low_gap, high_sum, high_gap;
+    Pack<cases> u[4], low_sum, low_gap, high_sum, high_gap;
 #pragma GCC unroll 12
-    for (int n = 0; n < 4; ++n) load(u[n], rows.u[n] + at + loads * i);
+    for (int n = 0; n < 4; ++n) load(u[n], rows.u[n] + at + cases * i);
     set_sum(low_sum, u[0], u[1]);
     set_difference(low_gap, u[1], u[0]);
     set_sum(high_sum, u[2], u[3]);
@@ -39,10 +41,11 @@ HEDDLE_INLINE void gather(Face& face, const Rows& rows, std::ptrdiff_t at) {
 }
 
 // The transpose: forces of the modes become forces of the nodes.
-HEDDLE_INLINE void scatter(const Face& force, const Rows& rows, std::ptrdiff_t at) {
+template <int cases>
+HEDDLE_INLINE void scatter(const Face<cases>& force, const Rows& rows, std::ptrdiff_t at) {
 #pragma GCC unroll 12
   for (int i = 0; i < 3; ++i) {
-    Pack low_even, low_odd, high_even, high_odd, f[4];
+    Pack<cases> low_even, low_odd, high_even, high_odd, f[4];
     set_difference(low_even, force.mode[i], force.mode[6 + i]);
     set_difference(low_odd, force.mode[3 + i], force.mode[9 + i]);
     set_sum(high_even, force.mode[i], force.mode[6 + i]);
@@ -53,16 +56,16 @@ HEDDLE_INLINE void scatter(const Face& force, const Rows& rows, std::ptrdiff_t a
     set_sum(f[3], high_even, high_odd);
 #pragma GCC unroll 12
     for (int n = 0; n < 4; ++n) {
-      Pack sum;
-      load(sum, rows.f[n] + at + loads * i);
+      Pack<cases> sum;
+      load(sum, rows.f[n] + at + cases * i);
       add(sum, f[n]);
-      store(rows.f[n] + at + loads * i, sum);
+      store(rows.f[n] + at + cases * i, sum);
     }
   }
 }
 
-template <int size>
-HEDDLE_INLINE void multiply(const double* table, const Pack* x, Pack* y) {
+template <int size, int cases>
+HEDDLE_INLINE void multiply(const double* table, const Pack<cases>* x, Pack<cases>* y) {
 #pragma GCC unroll 12
   for (int row = 0; row < size; ++row) {
     set_product(y[row], table[size * row], x[0]);
@@ -72,9 +75,11 @@ HEDDLE_INLINE void multiply(const double* table, const Pack* x, Pack* y) {
 }
 
 // Forces of the two faces of a voxel. `left` is added to, `right` is set.
-HEDDLE_INLINE void voxel(const ElementTable& table, const Face& l, const Face& r, Face& left, Face& right) {
+template <int cases>
+HEDDLE_INLINE void voxel(const ElementTable& table, const Face<cases>& l, const Face<cases>& r,
+                         Face<cases>& left, Face<cases>& right) {
   // Even in xi: eta, zeta, eta zeta. Odd: xi, xi eta, xi zeta, xi eta zeta.
-  Pack linear[9], bilinear[9], trilinear[3], force[9];
+  Pack<cases> linear[9], bilinear[9], trilinear[3], force[9];
 #pragma GCC unroll 12
   for (int i = 0; i < 3; ++i) {
     set_difference(linear[i], r.mode[i], l.mode[i]);
@@ -114,22 +119,24 @@ HEDDLE_INLINE void voxel(const ElementTable& table, const Face& l, const Face& r
 }
 
 // u . f over the four nodes, in modes.
-HEDDLE_INLINE void add_energy(Pack& energy, const Face& u, const Face& f) {
+template <int cases>
+HEDDLE_INLINE void add_energy(Pack<cases>& energy, const Face<cases>& u, const Face<cases>& f) {
 #pragma GCC unroll 12
   for (int m = 0; m < 12; ++m) add_product(energy, u.mode[m], f.mode[m]);
 }
 
 // One row of voxels along x. Each face is gathered once and scattered once, for both its voxels.
+template <int cases>
 HEDDLE_INLINE void apply_row(const ElementTable* tables, const std::uint16_t* material, int nx,
-                             const Rows& rows, Pack& energy) {
-  constexpr std::ptrdiff_t node = 3 * loads;
-  Face first, l, force, first_force;
+                             const Rows& rows, Pack<cases>& energy) {
+  constexpr std::ptrdiff_t node = 3 * cases;
+  Face<cases> first, l, force, first_force;
   gather(first, rows, 0);
   l = first;
   std::memset(&force, 0, sizeof force);
   std::memset(&first_force, 0, sizeof first_force);
   for (int i = 0; i < nx; ++i) {
-    Face r, next;
+    Face<cases> r, next;
     if (i + 1 < nx)
       gather(r, rows, node * (i + 1));
     else
@@ -150,10 +157,11 @@ HEDDLE_INLINE void apply_row(const ElementTable* tables, const std::uint16_t* ma
   scatter(first_force, rows, 0);
 }
 
+template <int cases>
 HEDDLE_INLINE void apply(const VoxelLayer& layer, double* energies) {
-  Pack energy;
+  Pack<cases> energy;
   std::memset(&energy, 0, sizeof energy);
-  const std::ptrdiff_t row = static_cast<std::ptrdiff_t>(3 * loads) * layer.nx;
+  const std::ptrdiff_t row = static_cast<std::ptrdiff_t>(3 * cases) * layer.nx;
   for (int j = 0; j < layer.ny; ++j) {
     const std::ptrdiff_t here = row * j, next = row * ((j + 1) % layer.ny);
     const Rows rows{{layer.lower + here, layer.lower + next, layer.upper + here, layer.upper + next},
@@ -165,15 +173,30 @@ HEDDLE_INLINE void apply(const VoxelLayer& layer, double* energies) {
   store(energies, energy);
 }
 
+template <int cases>
 void apply_plain(const VoxelLayer& layer, double* energies) {
-  apply(layer, energies);
+  apply<cases>(layer, energies);
 }
+template <int cases>
 __attribute__((target("avx2,fma"))) void apply_avx2(const VoxelLayer& layer, double* energies) {
-  apply(layer, energies);
+  apply<cases>(layer, energies);
 }
+template <int cases>
 __attribute__((target("avx2,fma,avx512f,avx512vl"))) void apply_avx512(const VoxelLayer& layer,
                                                                        double* energies) {
-  apply(layer, energies);
+  apply<cases>(layer, energies);
+}
+
+template <int cases>
+void apply_by(Instructions instructions, const VoxelLayer& layer, double* energies) {
+  switch (instructions) {
+    case Instructions::plain:
+      return apply_plain<cases>(layer, energies);
+    case Instructions::avx2:
+      return apply_avx2<cases>(layer, energies);
+    case Instructions::avx512:
+      return apply_avx512<cases>(layer, energies);
+  }
 }
 
 }  // namespace
@@ -193,23 +216,16 @@ Instructions best_instructions() {
   return best;
 }
 
-std::array<double, loads> apply_layer(const VoxelLayer& layer, Instructions instructions) {
-  std::array<double, loads> energies{};
-  switch (instructions) {
-    case Instructions::plain:
-      apply_plain(layer, energies.data());
-      break;
-    case Instructions::avx2:
-      apply_avx2(layer, energies.data());
-      break;
-    case Instructions::avx512:
-      apply_avx512(layer, energies.data());
-      break;
-  }
+CaseNumbers apply_layer(const VoxelLayer& layer, Instructions instructions) {
+  CaseNumbers energies{};
+  if (layer.cases == loads)
+    apply_by<loads>(instructions, layer, energies.data());
+  else
+    apply_by<pair_of_loads>(instructions, layer, energies.data());
   return energies;
 }
 
-std::array<double, loads> apply_layer(const VoxelLayer& layer) {
+CaseNumbers apply_layer(const VoxelLayer& layer) {
   return apply_layer(layer, best_instructions());
 }
 

@@ -18,23 +18,59 @@ struct Energies {
   std::vector<Vector6> held;  // work of held stresses on the whole fields [J/K] or [J]
 };
 
+// What a solver says of its load cases, from number `first` on.
+void add_to(SolverSummary& all, const SolverSummary& part, int first, int cases) {
+  for (int l = 0; l < cases; ++l) {
+    all.iterations[first + l] = part.iterations[l];
+    all.residual[first + l] = part.residual[l];
+  }
+  if (all.reason.empty() || !part.converged) all.reason = part.reason;
+  all.converged = all.converged && part.converged;
+}
+
+// Numbers of load cases `first` on, from where they stand in a solver's field.
+void put(Matrix6& all, int row, int column, int cases, const Matrix6& part) {
+  all.block(row, column, cases, cases) = part.topLeftCorner(cases, cases);
+}
+
+// u . K u of all load cases where they were solved two at a time, and only those within a pair were seen.
+// Across pairs u_a . K u_b = u_a . f_b up to the residual of b.
+void fill_across_pairs(Matrix6& stored, const Matrix6& work) {
+  for (int a = 0; a < loads; ++a)
+    for (int b = 0; b < loads; ++b)
+      if (a / pair_of_loads != b / pair_of_loads) stored(a, b) = work(b, a);
+}
+
 Energies solve(const ElasticCell& cell, Faces faces, const MacroLoad& load, const SolverOptions& options,
                std::span<const HeldStress> held) {
-  const CellSolver solver(cell, faces, mean_stiffness(cell));
+  const int cases = options.cases;
+  const CellSolver solver(cell, faces, mean_stiffness(cell), cases);
   const Matrix6 macro = macro_energy(cell, load);
-  std::array<double, loads> scale;
-  for (int l = 0; l < loads; ++l) scale[l] = macro(l, l);
-
-  Field force = solver.field(), u;
-  add_forces(cell, load, solver, force);
+  Matrix6 work, stored = Matrix6::Zero();  // f_a . u_b and u_a . K u_b
   Energies result;
-  result.solver = solver.solve(force, u, scale, options);
-
-  std::fill(force.begin(), force.end(), 0.0);
-  add_forces(cell, load, solver, force);
-  const Matrix6 work = gram(force, u, solver.plane());
-  solver.multiply(u, force);
-  const Matrix6 stored = gram(u, force, solver.plane());
+  result.solver.converged = true;
+  result.held.assign(held.size(), Vector6::Zero());
+  Field force = solver.field(), u;
+  const auto forces_from = [&](int first) {
+    std::fill(force.begin(), force.end(), 0.0);
+    add_forces(cell, load, solver, force, first);
+  };
+  for (int first = 0; first < loads; first += cases) {
+    CaseNumbers scale{};
+    for (int l = 0; l < cases; ++l) scale[l] = macro(first + l, first + l);
+    forces_from(first);
+    add_to(result.solver, solver.solve(force, u, scale, options), first, cases);
+    for (int other = 0; other < loads; other += cases) {
+      forces_from(other);
+      put(work, other, first, cases, gram(force, u, solver.plane(), cases));
+    }
+    solver.multiply(u, force);
+    put(stored, first, first, cases, gram(u, force, solver.plane(), cases));
+    for (std::size_t cause = 0; cause < held.size(); ++cause)
+      result.held[cause].segment(first, cases) =
+          held_work(cell, load, u, solver, first, held[cause]).head(cases);
+  }
+  if (cases == pair_of_loads) fill_across_pairs(stored, work);
   const Matrix6 energy = macro - work - work.transpose() + stored;
   const Matrix6 from_stress = macro - work;
   result.energy = 0.5 * (energy + energy.transpose());
@@ -43,8 +79,6 @@ Energies solve(const ElasticCell& cell, Faces faces, const MacroLoad& load, cons
         std::max(result.checks.hill_mandel, std::abs(energy(l, l) - from_stress(l, l)) / energy(l, l));
   result.checks.asymmetry = (from_stress - from_stress.transpose()).norm() / from_stress.norm();
   result.memory = solver.memory();
-  for (const HeldStress& stress : held)
-    result.held.push_back(held_work(cell, load, u, solver.plane(), solver.planes(), stress));
   return result;
 }
 

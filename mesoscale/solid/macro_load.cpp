@@ -46,25 +46,28 @@ ModalForce modal_force(const Matrix6& stiffness, const VoxelEdges& edges, const 
 }
 
 // Minus one eighth of the coefficients' forces on each node of a voxel, node 4 c + 2 b + a at (a, b, c).
-HEDDLE_INLINE void scatter(const ModalForce& force, double height, const std::array<double*, 8>& nodes) {
+// `first` load case of the field.
+template <int cases>
+HEDDLE_INLINE void scatter(const ModalForce& force, int first, double height,
+                           const std::array<double*, 8>& nodes) {
   for (int i = 0; i < 3; ++i) {
-    const auto coefficient = [&](Pack& sum, int m) {
-      Pack with_height;
-      load(sum, force.steady[m]);
-      load(with_height, force.with_height[m]);
+    const auto coefficient = [&](Pack<cases>& sum, int m) {
+      Pack<cases> with_height;
+      load(sum, force.steady[m] + first);
+      load(with_height, force.with_height[m] + first);
       add_product(sum, height, with_height);
     };
-    Pack x, y, z, xz, yz;
+    Pack<cases> x, y, z, xz, yz;
     coefficient(x, i);
     coefficient(y, 3 + i);
     coefficient(z, 6 + i);
-    load(xz, force.bilinear[i]);
-    load(yz, force.bilinear[3 + i]);
+    load(xz, force.bilinear[i] + first);
+    load(yz, force.bilinear[3 + i] + first);
 #pragma GCC unroll 8
     for (int n = 0; n < 8; ++n) {
       const double a = n & 1 ? -0.125 : 0.125, b = n & 2 ? -0.125 : 0.125, c = n & 4 ? -0.125 : 0.125;
-      double* at = nodes[static_cast<std::size_t>(n)] + loads * i;
-      Pack sum;
+      double* at = nodes[static_cast<std::size_t>(n)] + cases * i;
+      Pack<cases> sum;
       load(sum, at);
       add_product(sum, a, x);
       add_product(sum, b, y);
@@ -81,27 +84,31 @@ struct RowTask {
   const ModalForce* forces;
   const std::uint16_t* material;
   int nx;
+  int first;  // load case
   double height;
   std::array<double*, 4> rows;
 };
 
+template <int cases>
 HEDDLE_INLINE void scatter_row(const RowTask& t) {
-  constexpr std::ptrdiff_t node = 3 * loads;
+  constexpr std::ptrdiff_t node = 3 * cases;
   for (int i = 0; i < t.nx; ++i) {
     const std::ptrdiff_t l = node * i, r = node * ((i + 1) % t.nx);
     const auto& n = t.rows;
-    scatter(t.forces[t.material[i]], t.height,
-            {n[0] + l, n[0] + r, n[1] + l, n[1] + r, n[2] + l, n[2] + r, n[3] + l, n[3] + r});
+    scatter<cases>(t.forces[t.material[i]], t.first, t.height,
+                   {n[0] + l, n[0] + r, n[1] + l, n[1] + r, n[2] + l, n[2] + r, n[3] + l, n[3] + r});
   }
 }
+template <int cases>
 __attribute__((target("avx2,fma"))) void scatter_row_avx2(const RowTask& t) {
-  scatter_row(t);
+  scatter_row<cases>(t);
 }
+template <int cases>
 void add_row(const RowTask& t) {
   if (best_instructions() == Instructions::plain)
-    scatter_row(t);
+    scatter_row<cases>(t);
   else
-    scatter_row_avx2(t);
+    scatter_row_avx2<cases>(t);
 }
 
 }  // namespace
@@ -129,12 +136,13 @@ double layer_height(const ElasticCell& cell, int layer) {
   return (layer + 0.5 - 0.5 * cell.count[2]) * cell.edges(2, 2) / cell.count[2];
 }
 
-void add_forces(const ElasticCell& cell, const MacroLoad& load, const CellSolver& solver, Field& force) {
+void add_forces(const ElasticCell& cell, const MacroLoad& load, const CellSolver& solver, Field& force,
+                int first) {
   const VoxelEdges edges = cell.voxel_edges();
   std::vector<ModalForce> of_material;
   for (const Matrix6& c : cell.stiffness) of_material.push_back(modal_force(c, edges, load));
   const auto [nx, ny, nz] = cell.count;
-  const std::size_t row = static_cast<std::size_t>(3 * loads) * nx;
+  const std::size_t row = static_cast<std::size_t>(3 * solver.cases()) * nx;
   solver.for_layers([](int) {},
                     [&](int k) {
                       double* low = force.data() + solver.plane() * static_cast<std::size_t>(k);
@@ -143,11 +151,13 @@ void add_forces(const ElasticCell& cell, const MacroLoad& load, const CellSolver
                       for (int j = 0; j < ny; ++j) {
                         const std::size_t here = row * static_cast<std::size_t>(j),
                                           next = row * static_cast<std::size_t>((j + 1) % ny);
-                        add_row({of_material.data(),
-                                 cell.material.data() + (static_cast<std::size_t>(k) * ny + j) * nx,
-                                 nx,
-                                 layer_height(cell, k),
-                                 {low + here, low + next, high + here, high + next}});
+                        const RowTask task{of_material.data(),
+                                           cell.material.data() + (static_cast<std::size_t>(k) * ny + j) * nx,
+                                           nx,
+                                           first,
+                                           layer_height(cell, k),
+                                           {low + here, low + next, high + here, high + next}};
+                        (solver.cases() == loads ? add_row<loads> : add_row<pair_of_loads>)(task);
                       }
                     });
 }

@@ -21,7 +21,9 @@ double layer_height(const ElasticCell& cell, int layer);
 
 /// Nodal forces that the mean deformation leaves to the fluctuation, - B^T C (E + z K), exact over each
 /// voxel.
-void add_forces(const ElasticCell& cell, const MacroLoad& load, const CellSolver& solver, Field& force);
+/// @param first  load case that comes first in the field, of as many as the solver has side by side
+void add_forces(const ElasticCell& cell, const MacroLoad& load, const CellSolver& solver, Field& force,
+                int first = 0);
 
 /// Energy products of the mean deformations alone, sum over the voxels of V (E_a + z K_a) : C : (E_b + z K_b)
 /// [J].

@@ -18,8 +18,6 @@ namespace heddle::mesoscale::solid {
 
 namespace {
 
-constexpr int node = 3 * loads;         // doubles
-constexpr int signals = 3 * loads / 2;  // complex numbers a node
 // Powers of two between the numbers of a transform fall on the same lines of the cache: a few more break
 // this.
 constexpr int padding = 4;  // complex numbers
@@ -74,8 +72,11 @@ std::vector<Eigen::Matrix3d> inverse_pivots(const SlabBlocks& blocks, int planes
 }  // namespace
 
 struct ReferenceInverse::Parts {
-  Parts(std::array<int, 3> voxels, const VoxelEdges& edges, const Matrix6& c, Faces ends)
-      : count(voxels),
+  Parts(std::array<int, 3> voxels, const VoxelEdges& edges, const Matrix6& c, Faces ends, int side_by_side)
+      : cases(side_by_side),
+        node(3 * side_by_side),
+        signals(3 * side_by_side / 2),
+        count(voxels),
         faces(ends),
         planes(planes_of(voxels[2], ends)),
         blocks(voxels[0]),
@@ -105,12 +106,12 @@ struct ReferenceInverse::Parts {
   void gather(const double* from, std::size_t step, int rows, int length, double* to) const {
     for (int n = 0; n < rows; ++n)
       std::memcpy(to + 2 * static_cast<std::size_t>(stride_of_block()) * n, from + step * n,
-                  sizeof(double) * node * static_cast<std::size_t>(length));
+                  sizeof(double) * static_cast<std::size_t>(node) * static_cast<std::size_t>(length));
   }
   void scatter(const double* from, std::size_t step, int rows, int length, double* to) const {
     for (int n = 0; n < rows; ++n)
       std::memcpy(to + step * n, from + 2 * static_cast<std::size_t>(stride_of_block()) * n,
-                  sizeof(double) * node * static_cast<std::size_t>(length));
+                  sizeof(double) * static_cast<std::size_t>(node) * static_cast<std::size_t>(length));
   }
 
   template <class Transform>
@@ -153,13 +154,13 @@ struct ReferenceInverse::Parts {
     const double scale = 1.0 / (static_cast<double>(count[0]) * count[1] * count[2]);
     along_z.forward(mine);
     for (int z = 0; z < count[2]; ++z)
-      divide_by_symbol(symbol, waves, {blocks.first(b), blocks.length(b), y, z}, scale,
+      divide_by_symbol(symbol, waves, {blocks.first(b), blocks.length(b), y, z, cases}, scale,
                        mine + 2 * static_cast<std::ptrdiff_t>(stride_of_block()) * z);
     along_z.backward(mine);
   }
 
   void subtract_mean(double* mine) const {
-    double mean[node] = {};
+    double mean[3 * loads] = {};
     const std::ptrdiff_t stride = 2 * static_cast<std::ptrdiff_t>(stride_of_block());
     for (int k = 0; k < planes; ++k)
       for (int i = 0; i < node; ++i) mean[i] += mine[stride * k + i] / planes;
@@ -185,7 +186,8 @@ struct ReferenceInverse::Parts {
                    nullptr,
                    up,
                    1.0,
-                   1.0 / (static_cast<double>(count[0]) * count[1])};
+                   1.0 / (static_cast<double>(count[0]) * count[1]),
+                   cases};
     if (2 * ky > count[1]) {
       solve_opposite(ky, b, mine, task, up);
     } else {
@@ -228,6 +230,9 @@ struct ReferenceInverse::Parts {
     }
   }
 
+  int cases;
+  int node;     // doubles
+  int signals;  // complex numbers a node
   std::array<int, 3> count;
   Faces faces;
   int planes;
@@ -242,9 +247,9 @@ struct ReferenceInverse::Parts {
 };
 
 ReferenceInverse::ReferenceInverse(std::array<int, 3> count, const VoxelEdges& edges,
-                                   const Matrix6& stiffness, Faces faces) {
+                                   const Matrix6& stiffness, Faces faces, int cases) {
   check_positive(stiffness);
-  parts_ = std::make_unique<Parts>(count, edges, stiffness, faces);
+  parts_ = std::make_unique<Parts>(count, edges, stiffness, faces, cases);
 }
 ReferenceInverse::~ReferenceInverse() = default;
 ReferenceInverse::ReferenceInverse(ReferenceInverse&&) noexcept = default;

@@ -34,8 +34,10 @@ class ReferenceInverse {
  public:
   /// @param count  voxels along x, y, z
   /// @param stiffness  [Pa], positive definite; free: parts odd in z are dropped
+  /// @param cases      load cases side by side: loads or pair_of_loads
   /// @throws NumericalError  if it is not positive definite
-  ReferenceInverse(std::array<int, 3> count, const VoxelEdges& edges, const Matrix6& stiffness, Faces faces);
+  ReferenceInverse(std::array<int, 3> count, const VoxelEdges& edges, const Matrix6& stiffness, Faces faces,
+                   int cases = loads);
   ~ReferenceInverse();
   ReferenceInverse(ReferenceInverse&&) noexcept;
 

@@ -37,6 +37,7 @@ HEDDLE_INLINE void invert(const Symmetric& s, double scale, int count, Symmetric
   }
 }
 
+template <int cases>
 HEDDLE_INLINE void divide(const PeriodicSymbol& symbol, const std::array<Waves, 3>& waves,
                           const PeriodicBlock& block, double scale, double* values) {
   const double* x2 = waves[0].sine2.data() + block.first;
@@ -63,10 +64,10 @@ HEDDLE_INLINE void divide(const PeriodicSymbol& symbol, const std::array<Waves, 
   if (mean)
     for (int entry = 0; entry < 6; ++entry) m[entry][0] = 0.0;
   for (int w = 0; w < block.count; ++w) {
-    double* at = values + static_cast<std::ptrdiff_t>(3 * loads) * w;
-    Pack r[3], u[3];
+    double* at = values + static_cast<std::ptrdiff_t>(3 * cases) * w;
+    Pack<cases> r[3], u[3];
 #pragma GCC unroll 3
-    for (int i = 0; i < 3; ++i) load(r[i], at + loads * i);
+    for (int i = 0; i < 3; ++i) load(r[i], at + cases * i);
     set_product(u[0], m[0][w], r[0]);
     add_product(u[0], m[3][w], r[1]);
     add_product(u[0], m[4][w], r[2]);
@@ -77,19 +78,26 @@ HEDDLE_INLINE void divide(const PeriodicSymbol& symbol, const std::array<Waves, 
     add_product(u[2], m[5][w], r[1]);
     add_product(u[2], m[2][w], r[2]);
 #pragma GCC unroll 3
-    for (int i = 0; i < 3; ++i) store(at + loads * i, u[i]);
+    for (int i = 0; i < 3; ++i) store(at + cases * i, u[i]);
   }
 }
 
 // sign i u: real and imaginary parts change places.
-HEDDLE_INLINE void turn(Pack& u, double sign) {
-  const Four a = {-u.a[1], u.a[0], -u.a[3], u.a[2]};
-  const Two b = {-u.b[1], u.b[0]};
-  u.a = sign * a;
-  u.b = sign * b;
+template <int cases>
+HEDDLE_INLINE void turn(Pack<cases>& u, double sign) {
+  if constexpr (cases == 6) {
+    const Four a = {-u.a[1], u.a[0], -u.a[3], u.a[2]};
+    const Two b = {-u.b[1], u.b[0]};
+    u.a = sign * a;
+    u.b = sign * b;
+  } else {
+    const Two a = {-u.a[1], u.a[0]};
+    u.a = sign * a;
+  }
 }
 
-HEDDLE_INLINE void multiply_symmetric(const double* m, const Pack* x, Pack* y) {
+template <int cases>
+HEDDLE_INLINE void multiply_symmetric(const double* m, const Pack<cases>* x, Pack<cases>* y) {
   set_product(y[0], m[0], x[0]);
   add_product(y[0], m[3], x[1]);
   add_product(y[0], m[4], x[2]);
@@ -102,25 +110,26 @@ HEDDLE_INLINE void multiply_symmetric(const double* m, const Pack* x, Pack* y) {
 }
 
 // v_k = P_k (r_k - up^T v_(k-1)) upwards, then u_k = v_k - P_k up u_(k+1) downwards.
+template <int cases>
 HEDDLE_INLINE void thomas(const SlabBlock& b, double* values) {
-  constexpr std::ptrdiff_t wave = 3 * loads;
+  constexpr std::ptrdiff_t wave = 3 * cases;
   const auto up = [&](int row, int column, int w) { return b.up[(3 * row + column) * largest_block + w]; };
   for (int k = 0; k < b.planes; ++k) {
     double* here = values + b.stride * k;
     const double* inverse = b.inverse + static_cast<std::ptrdiff_t>(6) * b.count * k;
     for (int w = 0; w < b.count; ++w) {
       double* at = here + wave * w;
-      Pack r[3], v[3];
+      Pack<cases> r[3], v[3];
 #pragma GCC unroll 3
       for (int i = 0; i < 3; ++i) {
-        load(r[i], at + loads * i);
+        load(r[i], at + cases * i);
         r[i].a *= b.scale;
         r[i].b *= b.scale;
       }
       turn(r[2], b.sign);
       if (k > 0) {
 #pragma GCC unroll 3
-        for (int i = 0; i < 3; ++i) load(v[i], at - b.stride + loads * i);
+        for (int i = 0; i < 3; ++i) load(v[i], at - b.stride + cases * i);
 #pragma GCC unroll 3
         for (int i = 0; i < 3; ++i)
 #pragma GCC unroll 3
@@ -128,7 +137,7 @@ HEDDLE_INLINE void thomas(const SlabBlock& b, double* values) {
       }
       multiply_symmetric(inverse + 6 * w, r, v);
 #pragma GCC unroll 3
-      for (int i = 0; i < 3; ++i) store(at + loads * i, v[i]);
+      for (int i = 0; i < 3; ++i) store(at + cases * i, v[i]);
     }
   }
   for (int k = b.planes - 1; k >= 0; --k) {
@@ -137,9 +146,9 @@ HEDDLE_INLINE void thomas(const SlabBlock& b, double* values) {
     for (int w = 0; w < b.count; ++w) {
       double* at = here + wave * w;
       if (k + 1 < b.planes) {
-        Pack above[3], pull[3], fall[3], v;
+        Pack<cases> above[3], pull[3], fall[3], v;
 #pragma GCC unroll 3
-        for (int i = 0; i < 3; ++i) load(above[i], at + b.stride + loads * i);
+        for (int i = 0; i < 3; ++i) load(above[i], at + b.stride + cases * i);
 #pragma GCC unroll 3
         for (int i = 0; i < 3; ++i) {
           set_product(pull[i], up(i, 0, w), above[0]);
@@ -149,9 +158,9 @@ HEDDLE_INLINE void thomas(const SlabBlock& b, double* values) {
         multiply_symmetric(inverse + 6 * w, pull, fall);
 #pragma GCC unroll 3
         for (int i = 0; i < 3; ++i) {
-          load(v, at + loads * i);
+          load(v, at + cases * i);
           set_difference(v, v, fall[i]);
-          store(at + loads * i, v);
+          store(at + cases * i, v);
         }
       }
     }
@@ -159,27 +168,31 @@ HEDDLE_INLINE void thomas(const SlabBlock& b, double* values) {
   // Back from w_z = i u_z.
   for (int k = 0; k < b.planes; ++k)
     for (int w = 0; w < b.count; ++w) {
-      double* at = values + b.stride * k + wave * w + 2 * loads;
-      Pack u;
+      double* at = values + b.stride * k + wave * w + 2 * cases;
+      Pack<cases> u;
       load(u, at);
       turn(u, -b.sign);
       store(at, u);
     }
 }
 
+template <int cases>
 void divide_plain(const PeriodicSymbol& s, const std::array<Waves, 3>& w, const PeriodicBlock& b,
                   double scale, double* values) {
-  divide(s, w, b, scale, values);
+  divide<cases>(s, w, b, scale, values);
 }
+template <int cases>
 __attribute__((target("avx2,fma"))) void divide_avx2(const PeriodicSymbol& s, const std::array<Waves, 3>& w,
                                                      const PeriodicBlock& b, double scale, double* values) {
-  divide(s, w, b, scale, values);
+  divide<cases>(s, w, b, scale, values);
 }
+template <int cases>
 void thomas_plain(const SlabBlock& b, double* values) {
-  thomas(b, values);
+  thomas<cases>(b, values);
 }
+template <int cases>
 __attribute__((target("avx2,fma"))) void thomas_avx2(const SlabBlock& b, double* values) {
-  thomas(b, values);
+  thomas<cases>(b, values);
 }
 
 bool has_avx2() {
@@ -209,7 +222,11 @@ PeriodicSymbol::PeriodicSymbol(const Matrix9& t) {
 
 void divide_by_symbol(const PeriodicSymbol& symbol, const std::array<Waves, 3>& waves,
                       const PeriodicBlock& block, double scale, double* values) {
-  (has_avx2() ? divide_avx2 : divide_plain)(symbol, waves, block, scale, values);
+  if (block.cases == loads)
+    (has_avx2() ? divide_avx2<loads> : divide_plain<loads>)(symbol, waves, block, scale, values);
+  else
+    (has_avx2() ? divide_avx2<pair_of_loads> : divide_plain<pair_of_loads>)(symbol, waves, block, scale,
+                                                                            values);
 }
 
 SlabBlocks slab_blocks(const Matrix9& t, const Waves& x, const Waves& y, int place_x, int place_y) {
@@ -230,7 +247,10 @@ SlabBlocks slab_blocks(const Matrix9& t, const Waves& x, const Waves& y, int pla
 }
 
 void solve_slab(const SlabBlock& block, double* values) {
-  (has_avx2() ? thomas_avx2 : thomas_plain)(block, values);
+  if (block.cases == loads)
+    (has_avx2() ? thomas_avx2<loads> : thomas_plain<loads>)(block, values);
+  else
+    (has_avx2() ? thomas_avx2<pair_of_loads> : thomas_plain<pair_of_loads>)(block, values);
 }
 
 }  // namespace heddle::mesoscale::solid

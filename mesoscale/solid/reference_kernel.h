@@ -28,10 +28,11 @@ struct PeriodicSymbol {
 struct PeriodicBlock {
   int first, count;  ///< along x
   int y, z;
+  int cases = loads;  ///< or pair_of_loads
 };
 
 /// values := scale S^-1 values for a block of waves; the mean wave, which stands first, gives zero.
-/// @param values  count x 3 x loads
+/// @param values  count x 3 x cases
 void divide_by_symbol(const PeriodicSymbol& symbol, const std::array<Waves, 3>& waves,
                       const PeriodicBlock& block, double scale, double* values);
 
@@ -57,6 +58,7 @@ struct SlabBlock {
   const double* up;       ///< [9][largest_block]
   double sign;            ///< +1, or -1 at the opposite wave, where u_z turns round
   double scale;
+  int cases = loads;  ///< or pair_of_loads
 };
 void solve_slab(const SlabBlock& block, double* values);
 

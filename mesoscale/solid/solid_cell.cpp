@@ -171,7 +171,8 @@ Ply ply(const WeaveSpec& weave, double shear_angle, const SolidSpec& spec) {
   return {at_angle.thickness, plate_stiffness(elastic_cell(solid.cell, solid.stiffness), spec.solver)};
 }
 
-SolidResult analyse(const VoxelFileSpec& spec, const SolverOptions& solver) {
+SolidResult analyse(const VoxelFileSpec& spec, SolverOptions solver) {
+  solver.cases = spec.cases;
   const ReadVoxels read = read_voxels(spec);
   const std::vector<Matrix6> c = content_stiffness(read.cell, read.phases);
   SolidResult result;

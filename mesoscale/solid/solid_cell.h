@@ -113,7 +113,8 @@ Ply ply(const WeaveSpec& weave, double shear_angle, const SolidSpec& spec);
 Vector6 free_strain(const Matrix6& stiffness, const Vector6& held);
 
 /// A cell from a voxel file.
+/// @param solver  except for the load cases side by side, which the file's specification gives
 /// @throws InputError  if check(spec) finds something
-SolidResult analyse(const VoxelFileSpec& spec, const SolverOptions& solver = {});
+SolidResult analyse(const VoxelFileSpec& spec, SolverOptions solver = {});
 
 }  // namespace heddle::mesoscale::solid

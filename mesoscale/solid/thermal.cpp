@@ -15,17 +15,18 @@ Vector6 voigt_strain(const FreeStrain& strain) {
   return e;
 }
 
-// Mean over a voxel of the strains of all load cases, from the displacements of its nodes 4 c + 2 b + a.
+// Mean over a voxel of the strains of each load case, from the displacements of its nodes 4 c + 2 b + a.
 using Strains = Eigen::Matrix<double, 6, loads>;
-Strains mean_strain(const std::array<const double*, 8>& node, const Eigen::Matrix3d& to_reference) {
+Strains mean_strain(const std::array<const double*, 8>& node, int cases,
+                    const Eigen::Matrix3d& to_reference) {
   Strains strain = Strains::Zero();
-  for (int l = 0; l < loads; ++l) {
+  for (int l = 0; l < cases; ++l) {
     Eigen::Matrix3d pulled = Eigen::Matrix3d::Zero();  // du_i / dxi_M
     for (int n = 0; n < 8; ++n)
       for (int i = 0; i < 3; ++i)
         for (int m = 0; m < 3; ++m)
           pulled(i, m) +=
-              ((n >> m & 1) != 0 ? 0.125 : -0.125) * node[static_cast<std::size_t>(n)][loads * i + l];
+              ((n >> m & 1) != 0 ? 0.125 : -0.125) * node[static_cast<std::size_t>(n)][cases * i + l];
     const Eigen::Matrix3d gradient = pulled * to_reference;
     for (int v = 0; v < 6; ++v) {
       const auto [i, j] = voigt_axes[static_cast<std::size_t>(v)];
@@ -68,29 +69,30 @@ HeldStress content_held_stress(const VoxelCell& cell, std::span<const Matrix6> p
   return result;
 }
 
-Vector6 held_work(const ElasticCell& cell, const MacroLoad& load, const Field& u, std::size_t plane,
-                  int planes, const HeldStress& held) {
+Vector6 held_work(const ElasticCell& cell, const MacroLoad& load, const Field& u, const CellSolver& solver,
+                  int first, const HeldStress& held) {
+  const int cases = solver.cases();
   const VoxelEdges edges = cell.voxel_edges();
   const Eigen::Matrix3d to_reference = (0.5 * edges).inverse();
   const auto [nx, ny, nz] = cell.count;
-  constexpr std::size_t node = 3 * loads;
+  const std::size_t node = 3 * static_cast<std::size_t>(cases), plane = solver.plane();
   std::vector<Vector6> of_layer(static_cast<std::size_t>(nz));
   tbb::parallel_for(0, nz, [&](int k) {
-    Strains macro;
-    for (int l = 0; l < loads; ++l)
-      macro.col(l) = load.stretch[static_cast<std::size_t>(l)] +
-                     layer_height(cell, k) * load.curvature[static_cast<std::size_t>(l)];
+    Strains macro = Strains::Zero();
+    for (int l = 0; l < cases; ++l)
+      macro.col(l) = load.stretch[static_cast<std::size_t>(first + l)] +
+                     layer_height(cell, k) * load.curvature[static_cast<std::size_t>(first + l)];
     Vector6 sum = Vector6::Zero();
     std::array<const double*, 8> nodes{};
     for (int j = 0; j < ny; ++j)
       for (int i = 0; i < nx; ++i) {
         for (int n = 0; n < 8; ++n) {
-          const int x = (i + (n & 1)) % nx, y = (j + (n >> 1 & 1)) % ny, z = (k + (n >> 2)) % planes;
+          const int x = (i + (n & 1)) % nx, y = (j + (n >> 1 & 1)) % ny, z = (k + (n >> 2)) % solver.planes();
           nodes[static_cast<std::size_t>(n)] =
               u.data() + plane * static_cast<std::size_t>(z) + node * (static_cast<std::size_t>(y) * nx + x);
         }
         const std::uint16_t m = cell.material[(static_cast<std::size_t>(k) * ny + j) * nx + i];
-        sum += (macro + mean_strain(nodes, to_reference)).transpose() * held[m];
+        sum += (macro + mean_strain(nodes, cases, to_reference)).transpose() * held[m];
       }
     of_layer[static_cast<std::size_t>(k)] = sum;
   });

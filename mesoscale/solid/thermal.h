@@ -38,9 +38,9 @@ HeldStress content_held_stress(const VoxelCell& cell, std::span<const Matrix6> p
 
 /// For each load case the integral over the cell of its whole strain field times the held stress [J/K] or
 /// [J]: by reciprocity what the cell held at zero mean strain presses with, without a solution of its own.
-/// @param u      fluctuations of the load cases, as the solver left them
-/// @param plane  doubles of a node plane; planes of them
-Vector6 held_work(const ElasticCell& cell, const MacroLoad& load, const Field& u, std::size_t plane,
-                  int planes, const HeldStress& held);
+/// @param u      fluctuations of the solver's load cases, from number `first` on, as it left them
+/// @return  of those load cases, the others zero
+Vector6 held_work(const ElasticCell& cell, const MacroLoad& load, const Field& u, const CellSolver& solver,
+                  int first, const HeldStress& held);
 
 }  // namespace heddle::mesoscale::solid

@@ -30,6 +30,7 @@ struct VoxelFileSpec {
   std::filesystem::path orientations = {};  ///< of a deck: directions of its elements
   double length_unit = 1e-3;                ///< of a deck [m]
   TransverseIsotropy tow{};                 ///< of a deck: all its yarns, axis along their direction
+  int cases = loads;                        ///< load cases side by side (SolverOptions)
 };
 
 /// Ranges, the size of the file, and a phase for every label in it (keys of the configuration file below

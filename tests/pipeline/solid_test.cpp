@@ -102,6 +102,30 @@ TEST_CASE("a weave with solid writes its stiffness, from the cache to the same b
   CHECK(manifest["stages"]["solid"]["reused"] == true);
 }
 
+TEST_CASE("two load cases at once give the file of six to six digits, of a weave and of voxels",
+          "[pipeline][solid]") {
+  const Scratch scratch;
+  const auto stiffness = [&](const char* config, const char* name, std::vector<std::string> settings) {
+    REQUIRE(pipeline::weave_case(options_for(config, scratch.path / name, std::move(settings))) == 0);
+    const auto json = nlohmann::json::parse(read_text_file(scratch.path / name / "mesoscale/stiffness.json"));
+    return json["C_MPa"].get<std::vector<std::vector<double>>>();
+  };
+  const auto compare = [](const auto& two, const auto& six) {
+    bool other = false;
+    for (std::size_t i = 0; i < 6; ++i)
+      for (std::size_t j = 0; j < 6; ++j) {
+        CHECK(two[i][j] == Approx(six[i][j]).epsilon(1e-6).margin(1e-6 * six[0][0]));
+        other = other || two[i][j] != six[i][j];
+      }
+    CHECK(other);  // solved anew, not out of the cache
+  };
+  std::vector<std::string> pairs = coarse;
+  pairs.push_back("solid.load_cases_at_once=2");
+  compare(stiffness("unit_cell.yaml", "weave2", pairs), stiffness("unit_cell.yaml", "weave6", coarse));
+  compare(stiffness("voxel_cell.yaml", "voxels2", {"cell.voxels.load_cases_at_once=2"}),
+          stiffness("voxel_cell.yaml", "voxels6", {}));
+}
+
 TEST_CASE("a weave without solid writes no stiffness and says nothing of it", "[pipeline][solid]") {
   const Scratch scratch;
   CHECK(pipeline::weave_case(options_for("unit_cell.yaml", scratch.path / "plain", {})) == 0);

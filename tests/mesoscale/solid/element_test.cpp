@@ -22,16 +22,20 @@ Matrix6 general_stiffness() {
 }
 
 struct Planes {
-  int nx, ny;
+  int nx, ny, cases;
   std::vector<double> lower, upper, force_lower, force_upper;
   std::vector<std::uint16_t> material;
   std::vector<ElementTable> tables;
 
-  Planes(int x, int y, std::vector<ElementTable> of_materials)
-      : nx(x), ny(y), material(static_cast<std::size_t>(x) * y), tables(std::move(of_materials)) {
+  Planes(int x, int y, std::vector<ElementTable> of_materials, int side_by_side)
+      : nx(x),
+        ny(y),
+        cases(side_by_side),
+        material(static_cast<std::size_t>(x) * y),
+        tables(std::move(of_materials)) {
     std::mt19937 generator(7);
     std::uniform_real_distribution<double> number(-1.0, 1.0);
-    const std::size_t size = static_cast<std::size_t>(3 * loads) * x * y;
+    const std::size_t size = static_cast<std::size_t>(3 * cases) * x * y;
     for (auto* field : {&lower, &upper}) {
       field->resize(size);
       for (double& value : *field) value = number(generator);
@@ -40,12 +44,18 @@ struct Planes {
     for (auto& m : material) m = static_cast<std::uint16_t>(generator() % tables.size());
   }
   VoxelLayer layer() {
-    return {
-        nx,           ny, lower.data(), upper.data(), force_lower.data(), force_upper.data(), material.data(),
-        tables.data()};
+    return {nx,
+            ny,
+            lower.data(),
+            upper.data(),
+            force_lower.data(),
+            force_upper.data(),
+            material.data(),
+            tables.data(),
+            cases};
   }
   std::size_t at(int i, int j, int component, int load) const {
-    return static_cast<std::size_t>(((j % ny) * nx + i % nx) * 3 + component) * loads +
+    return static_cast<std::size_t>(((j % ny) * nx + i % nx) * 3 + component) * cases +
            static_cast<std::size_t>(load);
   }
 };
@@ -65,7 +75,7 @@ TEST_CASE("the layer product is the sum of the voxels' matrices at all Gauss poi
   if (static_cast<int>(instructions) > static_cast<int>(best_instructions()))
     return;  // not on this processor
   const std::vector<Matrix6> stiffness{general_stiffness(), isotropic_stiffness(2e9, 1e9)};
-  Planes planes(3, 2, element_tables(stiffness, oblique()));
+  Planes planes(3, 2, element_tables(stiffness, oblique()), GENERATE(loads, pair_of_loads));
   const auto energy = apply_layer(planes.layer(), instructions);
 
   std::vector<double> lower(planes.lower.size(), 0.0), upper(planes.upper.size(), 0.0);
@@ -74,7 +84,7 @@ TEST_CASE("the layer product is the sum of the voxels' matrices at all Gauss poi
     for (int i = 0; i < planes.nx; ++i) {
       const auto k =
           element_matrix(stiffness[planes.material[static_cast<std::size_t>(j * planes.nx + i)]], oblique());
-      for (int l = 0; l < loads; ++l) {
+      for (int l = 0; l < planes.cases; ++l) {
         Eigen::Matrix<double, 24, 1> u;
         for (int n = 0; n < 8; ++n)
           for (int c = 0; c < 3; ++c)

@@ -7,7 +7,8 @@
 
 namespace heddle::test {
 
-/// One repeat of a consolidated weave as tetrahedra that follow the faces of the tows, periodic in its plane.
+/// One repeat of a consolidated weave as tetrahedra that follow the faces of the tows, periodic in its plane:
+/// where gmsh takes the faces of bodies from (gmsh_plate.h).
 ///
 /// Nodes stand on vertical lines over an even grid of the parameter plane whose columns end at the edges of
 /// the tows. Faces of the tows cut each line; a triangle of lines is filled from below, layer by layer, by
@@ -24,7 +25,6 @@ struct TetCell {
     std::array<int, 4> node;
     std::array<std::array<double, 3>, 4> place;  ///< [m], not wrapped round the repeat
     int phase;                                   ///< 0 resin, 1 warp, 2 weft
-    std::array<double, 3> fibre;                 ///< direction of its tow
   };
   std::vector<Node> nodes;
   std::vector<Tetrahedron> tetrahedra;
@@ -33,13 +33,13 @@ struct TetCell {
   double height = 0.0;  ///< [m]
 };
 
+/// Along the tow that fills a place (phase 1 warp, 2 weft), not of unit length; {1, 0, 0} in resin.
+/// @param place  {x, y, z} [m]
+std::array<double, 3> fibre_direction(const mesoscale::UnitCell& cell, int phase,
+                                      const std::array<double, 3>& place);
+
 /// @param per_tow    columns over a tow; gaps take a fifth of it
 /// @param over_tow   layers of a tow at its crown
 TetCell tet_cell(const mesoscale::UnitCell& cell, double thickness, int per_tow, int over_tow);
-
-/// [A B; B D] by linear tetrahedra with periodic sides and free faces, and one factorisation by CHOLMOD.
-/// @param phases  stiffness of resin, warp and weft, axis 1 along the fibres [Pa]
-mesoscale::solid::Matrix6 plate_of_tets(const TetCell& cell,
-                                        const std::array<mesoscale::solid::Matrix6, 3>& phases);
 
 }  // namespace heddle::test

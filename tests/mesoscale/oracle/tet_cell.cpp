@@ -3,18 +3,13 @@
 #include <Eigen/LU>
 #include <algorithm>
 #include <cmath>
-#include <map>
-#include <stdexcept>
 #include <tuple>
-
-#include "core/sparse_solver.h"
 
 namespace heddle::test {
 
 namespace {
 
 using mesoscale::UnitCell;
-using mesoscale::solid::Matrix6;
 
 // Faces that cut a line, from below.
 enum Face { floor_face, warp_below, warp_above, weft_below, weft_above, roof_face, faces };
@@ -218,7 +213,6 @@ class TetBuilder {
   void add_tetrahedron(const Corners& corners, const std::array<int, 3>& front, std::size_t lift, int phase) {
     TetCell::Tetrahedron tet{};
     tet.phase = phase;
-    double xi = 0.0, eta = 0.0;
     for (std::size_t n = 0; n < 4; ++n) {
       const std::size_t c = n < 3 ? n : lift;
       const int k = n < 3 ? front[c] : front[c] + 1;
@@ -227,30 +221,9 @@ class TetBuilder {
       const std::array<double, 2> place = cell_.place(u, v);
       tet.node[n] = line(corners[c]).nodes[static_cast<std::size_t>(k)];
       tet.place[n] = {place[0], place[1], node_of(line(corners[c]), k).height};
-      xi += 0.25 * u;
-      eta += 0.25 * v;
     }
-    tet.fibre = direction(phase, xi, eta);
     result_.volume += volume(tet);
     result_.tetrahedra.push_back(tet);
-  }
-
-  std::array<double, 3> direction(int phase, double xi, double eta) const {
-    const double h = 1e-4 * cell_.tow[0].spacing;
-    if (phase == 1) {
-      const int warp = static_cast<int>(std::lround(eta / cell_.tow[0].spacing));
-      return {1.0, 0.0,
-              (mesoscale::warp_centre(cell_, warp, xi + h) - mesoscale::warp_centre(cell_, warp, xi - h)) /
-                  (2.0 * h)};
-    }
-    if (phase == 2) {
-      const int weft = static_cast<int>(std::lround(xi / cell_.tow[1].spacing));
-      const auto [x, y] = cell_.place(0.0, 1.0);
-      return {x, y,
-              (mesoscale::weft_centre(cell_, weft, eta + h) - mesoscale::weft_centre(cell_, weft, eta - h)) /
-                  (2.0 * h)};
-    }
-    return {1.0, 0.0, 0.0};
   }
 
   static double volume(const TetCell::Tetrahedron& tet) {
@@ -269,89 +242,29 @@ class TetBuilder {
   TetCell result_;
 };
 
-// Strains of a linear tetrahedron: B, its volume, its middle, and the mean of (z - z_middle)^2.
-struct TetElement {
-  Eigen::Matrix<double, 6, 12> strain = Eigen::Matrix<double, 6, 12>::Zero();
-  double volume = 0.0, middle = 0.0, spread = 0.0;
-};
-
-TetElement element_of(const TetCell::Tetrahedron& tet) {
-  Eigen::Matrix4d corners;
-  for (Eigen::Index n = 0; n < 4; ++n) {
-    const auto& p = tet.place[static_cast<std::size_t>(n)];
-    corners.row(n) << 1.0, p[0], p[1], p[2];
-  }
-  const Eigen::Matrix4d shape = corners.inverse();  // columns: coefficients of each node's function
-  TetElement e;
-  e.volume = std::abs(corners.determinant()) / 6.0;
-  for (Eigen::Index n = 0; n < 4; ++n) {
-    const double x = shape(1, n), y = shape(2, n), z = shape(3, n);
-    e.strain.block<6, 3>(0, 3 * n) << x, 0, 0, 0, y, 0, 0, 0, z, 0, z, y, z, 0, x, y, x, 0;
-    e.middle += 0.25 * corners(n, 3);
-  }
-  for (Eigen::Index n = 0; n < 4; ++n) e.spread += std::pow(corners(n, 3) - e.middle, 2) / 20.0;
-  return e;
-}
-
 }  // namespace
+
+std::array<double, 3> fibre_direction(const UnitCell& cell, int phase, const std::array<double, 3>& place) {
+  if (phase == 0) return {1.0, 0.0, 0.0};
+  const auto along_xi = cell.place(1.0, 0.0), along_eta = cell.place(0.0, 1.0);
+  Eigen::Matrix2d lattice;
+  lattice << along_xi[0], along_eta[0], along_xi[1], along_eta[1];
+  const Eigen::Vector2d at = lattice.inverse() * Eigen::Vector2d(place[0], place[1]);
+  const double xi = at[0], eta = at[1], h = 1e-4 * cell.tow[0].spacing;
+  if (phase == 1) {
+    const int warp = static_cast<int>(std::lround(eta / cell.tow[0].spacing));
+    return {1.0, 0.0,
+            (mesoscale::warp_centre(cell, warp, xi + h) - mesoscale::warp_centre(cell, warp, xi - h)) /
+                (2.0 * h)};
+  }
+  const int weft = static_cast<int>(std::lround(xi / cell.tow[1].spacing));
+  return {along_eta[0], along_eta[1],
+          (mesoscale::weft_centre(cell, weft, eta + h) - mesoscale::weft_centre(cell, weft, eta - h)) /
+              (2.0 * h)};
+}
 
 TetCell tet_cell(const UnitCell& cell, double thickness, int per_tow, int over_tow) {
   return TetBuilder(cell, thickness, per_tow, over_tow).build();
-}
-
-Matrix6 plate_of_tets(const TetCell& cell, const std::array<Matrix6, 3>& phases) {
-  using mesoscale::solid::rotated;
-  using mesoscale::solid::turn_to;
-  const int unknowns = 3 * static_cast<int>(cell.nodes.size()) - 3;  // the first node is held
-  // Macro strains 11, 22, 12 and the same times z.
-  Eigen::Matrix<double, 6, 3> plane = Eigen::Matrix<double, 6, 3>::Zero();
-  plane(0, 0) = plane(1, 1) = plane(5, 2) = 1.0;
-
-  std::vector<std::map<int, double>> columns(static_cast<std::size_t>(unknowns));  // row >= column
-  Eigen::MatrixXd force = Eigen::MatrixXd::Zero(unknowns, 6);
-  Matrix6 energy = Matrix6::Zero();
-  for (const TetCell::Tetrahedron& tet : cell.tetrahedra) {
-    const TetElement e = element_of(tet);
-    const Matrix6& still = phases[static_cast<std::size_t>(tet.phase)];
-    const Matrix6 c =
-        tet.phase == 0 ? still : rotated(still, turn_to({tet.fibre[0], tet.fibre[1], tet.fibre[2]}));
-    const Eigen::Matrix<double, 6, 12> stress = c * e.strain;
-    const Eigen::Matrix<double, 12, 12> stiff = e.volume * e.strain.transpose() * stress;
-    Eigen::Matrix<double, 12, 6> push;
-    push << e.volume * stress.transpose() * plane, e.volume * e.middle * stress.transpose() * plane;
-    const Eigen::Matrix3d q = e.volume * plane.transpose() * c * plane;
-    energy.topLeftCorner<3, 3>() += q;
-    energy.topRightCorner<3, 3>() += e.middle * q;
-    energy.bottomLeftCorner<3, 3>() += e.middle * q;
-    energy.bottomRightCorner<3, 3>() += (e.middle * e.middle + e.spread) * q;
-    for (int a = 0; a < 12; ++a) {
-      const int row = 3 * tet.node[static_cast<std::size_t>(a / 3)] + a % 3 - 3;
-      if (row < 0) continue;
-      force.row(row) -= push.row(a);
-      for (int b = 0; b < 12; ++b) {
-        const int column = 3 * tet.node[static_cast<std::size_t>(b / 3)] + b % 3 - 3;
-        if (column >= 0 && column <= row) columns[static_cast<std::size_t>(column)][row] += stiff(a, b);
-      }
-    }
-  }
-  SymmetricPattern pattern;
-  pattern.size = unknowns;
-  pattern.column_start.push_back(0);
-  std::vector<double> values;
-  for (const auto& column : columns) {
-    for (const auto& [row, value] : column) {
-      pattern.row.push_back(row);
-      values.push_back(value);
-    }
-    pattern.column_start.push_back(static_cast<int>(pattern.row.size()));
-  }
-  SparseSolver solver(std::move(pattern));
-  std::copy(values.begin(), values.end(), solver.values().begin());
-  if (!solver.factorise()) throw std::runtime_error("tetrahedra: the stiffness is not positive definite");
-  Eigen::MatrixXd u = force;
-  for (Eigen::Index load = 0; load < 6; ++load)
-    solver.solve({u.col(load).data(), static_cast<std::size_t>(unknowns)});
-  return (energy - force.transpose() * u) / cell.area;
 }
 
 }  // namespace heddle::test
