@@ -131,13 +131,16 @@ VoxelLabels tow_labels(const UnitCell& cell, int per_pitch, int through) {
   return voxels;
 }
 
-TriangleMesh tow_surfaces(const UnitCell& cell, int along, int across) {
-  TriangleMesh mesh;
-  for (int i = 0; i < cell.weave.warps; ++i)
-    TubeBuilder(cell, TowDirection::warp, i, along * cell.weave.wefts, across).append_to(mesh);
-  for (int j = 0; j < cell.weave.wefts; ++j)
-    TubeBuilder(cell, TowDirection::weft, j, along * cell.weave.warps, across).append_to(mesh);
-  return mesh;
+TowSurfaces tow_surfaces(const UnitCell& cell, int along, int across) {
+  TowSurfaces surfaces;
+  int tow = 0;
+  const auto add = [&](TowDirection direction, int index, int stations) {
+    TubeBuilder(cell, direction, index, stations, across).append_to(surfaces.mesh);
+    surfaces.tow.resize(surfaces.mesh.triangles.size(), ++tow);
+  };
+  for (int i = 0; i < cell.weave.warps; ++i) add(TowDirection::warp, i, along * cell.weave.wefts);
+  for (int j = 0; j < cell.weave.wefts; ++j) add(TowDirection::weft, j, along * cell.weave.warps);
+  return surfaces;
 }
 
 std::vector<Outline> warp_cut(const UnitCell& cell, int warp, int points_per_pitch) {

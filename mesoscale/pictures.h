@@ -10,14 +10,17 @@
 
 namespace heddle::mesoscale {
 
-/// The name of the stages that write pictures.
-using TriMesh = TriangleMesh;
+/// Surfaces of all tows of one repeat.
+struct TowSurfaces {
+  TriangleMesh mesh;
+  std::vector<int> tow;  ///< of each triangle: 1 to `warps` the warps, then the wefts
+};
 
-/// Surfaces of all tows of one repeat, each closed, in the sheared fabric plane: sections are swept along the
-/// path and flat at the ends of the repeat.
+/// Each tow is closed and lies in the sheared fabric plane: sections are swept along the path and flat at the
+/// ends of the repeat.
 /// @param along   stations per pitch
 /// @param across  strips over the tow width
-TriangleMesh tow_surfaces(const UnitCell& cell, int along = 24, int across = 16);
+TowSurfaces tow_surfaces(const UnitCell& cell, int along = 24, int across = 16);
 
 /// Which tow fills each voxel of one repeat, sampled at the voxel's middle: 0 = none (resin or air), 1 to
 /// `warps` the warps, then the wefts. x fastest. Lengths in the parameter plane, which is the fabric's own

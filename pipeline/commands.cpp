@@ -71,10 +71,11 @@ void run_cell(const Case& a_case, RunFolder& folder, const Cache& cache, Finding
                contact_csv(fabric.contact, contact_pressures(), fabric.contact.log_fraction.parameter()));
   folder.write("mesoscale/picture_frame.csv", picture_frame_csv(fabric));
   folder.write("mesoscale/bias_extension.csv", bias_extension_csv(fabric));
-  folder.write("mesoscale/tows.stl", tows_stl(findings.pictures->tows));
-  const mesoscale::solid::CellVoxels voxels = weave_voxels(*a_case.cell);
-  folder.write("mesoscale/cell.vti", vti(voxels));
-  folder.write("mesoscale/cell.h5", voxels_hdf5(voxels));
+  const CellBodies bodies = cell_bodies(*a_case.cell);
+  folder.write("mesoscale/tows.stl", tows_stl(bodies.tows.mesh));
+  folder.write("mesoscale/tows.vtu", tows_vtu(bodies.tows, bodies.warps));
+  folder.write("mesoscale/cell.vti", vti(bodies.voxels));
+  folder.write("mesoscale/cell.h5", voxels_hdf5(bodies.voxels));
   if (a_case.cell->stack.plies > 1) {
     findings.stack = stack_view(*a_case.cell);
     folder.write("mesoscale/nesting.csv", nesting_csv(*findings.stack));

@@ -113,27 +113,32 @@ std::string data_elements(const std::vector<DataArray>& arrays, std::size_t plac
   return out;
 }
 
-std::string points_element(const QuadMesh& mesh, AppendedData& data) {
+using Points = std::vector<std::array<double, 3>>;
+
+std::string points_element(const Points& points, AppendedData& data) {
   std::vector<double> flat;
-  for (const auto& point : mesh.points) flat.insert(flat.end(), point.begin(), point.end());
+  for (const auto& point : points) flat.insert(flat.end(), point.begin(), point.end());
   require_writable(flat, "Points", Precision::double_precision);
   return "      <Points>\n" + array_element("Float64", "Points", 3, data.add(bytes_of(flat))) +
          "      </Points>\n";
 }
 
-std::string cells_element(const QuadMesh& mesh, AppendedData& data) {
-  constexpr std::uint8_t vtk_quad = 9;
+/// Triangles or quads.
+template <std::size_t corners>
+std::string cells_element(const std::vector<std::array<int, corners>>& cells, std::size_t points,
+                          AppendedData& data) {
+  constexpr std::uint8_t vtk_type = corners == 3 ? 5 : 9;
   std::vector<std::int64_t> connectivity, offsets;
-  for (const auto& quad : mesh.quads) {
-    for (const int corner : quad) {
-      if (corner < 0 || static_cast<std::size_t>(corner) >= mesh.points.size()) {
-        throw OutputError(fmt::format("a quad names point {} of {}", corner, mesh.points.size()));
-      }
+  for (const auto& cell : cells) {
+    for (const int corner : cell) {
+      if (corner < 0 || static_cast<std::size_t>(corner) >= points)
+        throw OutputError(
+            fmt::format("a {} names point {} of {}", corners == 3 ? "triangle" : "quad", corner, points));
       connectivity.push_back(corner);
     }
     offsets.push_back(static_cast<std::int64_t>(connectivity.size()));
   }
-  const std::vector<std::uint8_t> types(mesh.quads.size(), vtk_quad);
+  const std::vector<std::uint8_t> types(cells.size(), vtk_type);
   std::string out = "      <Cells>\n";
   out += array_element("Int64", "connectivity", 1, data.add(bytes_of(connectivity)));
   out += array_element("Int64", "offsets", 1, data.add(bytes_of(offsets)));
@@ -141,20 +146,34 @@ std::string cells_element(const QuadMesh& mesh, AppendedData& data) {
   return out + "      </Cells>\n";
 }
 
-}  // namespace
-
-std::string vtu(const QuadMesh& mesh, Precision precision) {
+template <std::size_t corners>
+std::string grid(const Points& points, const std::vector<std::array<int, corners>>& cells,
+                 const std::vector<DataArray>& point_data, const std::vector<DataArray>& cell_data,
+                 Precision precision) {
   AppendedData data;
   std::string body =
       fmt::format("  <UnstructuredGrid>\n    <Piece NumberOfPoints=\"{}\" NumberOfCells=\"{}\">\n",
-                  mesh.points.size(), mesh.quads.size());
-  body += "      <PointData>\n" + data_elements(mesh.point_data, mesh.points.size(), precision, data) +
+                  points.size(), cells.size());
+  body += "      <PointData>\n" + data_elements(point_data, points.size(), precision, data) +
           "      </PointData>\n";
-  body += "      <CellData>\n" + data_elements(mesh.cell_data, mesh.quads.size(), precision, data) +
-          "      </CellData>\n";
-  body += points_element(mesh, data) + cells_element(mesh, data);
+  body +=
+      "      <CellData>\n" + data_elements(cell_data, cells.size(), precision, data) + "      </CellData>\n";
+  body += points_element(points, data) + cells_element(cells, points.size(), data);
   body += "    </Piece>\n  </UnstructuredGrid>\n";
   return file_of("UnstructuredGrid", body, data);
+}
+
+}  // namespace
+
+std::string vtu(const QuadMesh& mesh, Precision precision) {
+  return grid(mesh.points, mesh.quads, mesh.point_data, mesh.cell_data, precision);
+}
+
+std::string tows_vtu(const mesoscale::TowSurfaces& tows, int warps) {
+  DataArray number{"tow", 1, {tows.tow.begin(), tows.tow.end()}}, family{"family", 1, {}};
+  for (const int tow : tows.tow) family.values.push_back(tow <= warps ? 1.0 : 2.0);
+  return grid(tows.mesh.vertices, tows.mesh.triangles, {}, {std::move(number), std::move(family)},
+              Precision::single_precision);
 }
 
 namespace {

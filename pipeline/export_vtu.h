@@ -30,6 +30,11 @@ struct QuadMesh {
 /// @throws OutputError  if an array does not fit the mesh or a number is not finite; names the array
 std::string vtu(const QuadMesh& mesh, Precision precision = Precision::single_precision);
 
+/// A .vtu file of the surfaces of tows [m], with the number of each (`tow`: warps, then wefts) and its family
+/// (`family`: 1 warp, 2 weft).
+/// @throws OutputError  if a triangle names a vertex that is not there, or a number is not finite
+std::string tows_vtu(const mesoscale::TowSurfaces& tows, int warps);
+
 /// A place in a cell, in the cell's own coordinates, on the formed blank [m]. Bilinear.
 std::array<double, 3> position_in(const macroscale::BlankState& blank, const std::array<int, 4>& quad,
                                   const macroscale::Point2& local);

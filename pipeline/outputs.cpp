@@ -256,7 +256,7 @@ void append_bytes(std::string& out, Number value) {
   out.append(bytes, sizeof(Number));
 }
 
-std::array<double, 3> unit_normal(const Triangle& t) {
+std::array<double, 3> unit_normal(const std::array<std::array<double, 3>, 3>& t) {
   const std::array<double, 3> a{t[1][0] - t[0][0], t[1][1] - t[0][1], t[1][2] - t[0][2]};
   const std::array<double, 3> b{t[2][0] - t[0][0], t[2][1] - t[0][1], t[2][2] - t[0][2]};
   const std::array<double, 3> n{a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2],
@@ -268,13 +268,16 @@ std::array<double, 3> unit_normal(const Triangle& t) {
 
 }  // namespace
 
-std::string tows_stl(std::span<const Triangle> triangles) {
+std::string tows_stl(const TriangleMesh& mesh) {
   std::string out = "heddle: tows of one cell, millimetres";
   out.resize(80, ' ');
-  append_bytes(out, static_cast<std::uint32_t>(triangles.size()));
-  for (std::size_t i = 0; i < triangles.size(); ++i) {
-    for (const double component : unit_normal(triangles[i])) append_bytes(out, static_cast<float>(component));
-    for (const auto& corner : triangles[i]) {
+  append_bytes(out, static_cast<std::uint32_t>(mesh.triangles.size()));
+  for (std::size_t i = 0; i < mesh.triangles.size(); ++i) {
+    std::array<std::array<double, 3>, 3> triangle;
+    for (std::size_t k = 0; k < 3; ++k)
+      triangle[k] = mesh.vertices[static_cast<std::size_t>(mesh.triangles[i][k])];
+    for (const double component : unit_normal(triangle)) append_bytes(out, static_cast<float>(component));
+    for (const auto& corner : triangle) {
       for (const double component : corner) {
         if (!std::isfinite(component))
           throw OutputError(fmt::format("tows.stl: triangle {} has a corner at {}", i, component));

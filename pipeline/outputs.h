@@ -189,10 +189,8 @@ std::string manifest_json(const Manifest& manifest);
 // ---- geometry
 // ----------------------------------------------------------------------------------------------------
 
-/// Corners [m], counter-clockwise seen from outside.
-using Triangle = std::array<std::array<double, 3>, 3>;
-
 /// Binary STL in millimetres, which is what readers of STL assume; normals from the corners.
-std::string tows_stl(std::span<const Triangle> triangles);
+/// @throws OutputError  naming the triangle, if a corner is not finite
+std::string tows_stl(const TriangleMesh& mesh);
 
 }  // namespace heddle::pipeline

@@ -113,10 +113,6 @@ void write_pictures(Hdf5Writer& file, const WeavePictures& pictures) {
                {outline.points.size(), 2});
     file.write(fmt::format("/section/{:06d}/warp", k), outline.tow == mesoscale::TowDirection::warp ? 1 : 0);
   }
-  std::vector<double> corners;
-  for (const Triangle& triangle : pictures.tows)
-    for (const auto& corner : triangle) corners.insert(corners.end(), corner.begin(), corner.end());
-  file.write("/tows", std::span<const double>(corners), {pictures.tows.size(), 3, 3});
   write_row(file, "/bodies", body_members(pictures.bodies));
 }
 
@@ -140,10 +136,6 @@ WeavePictures read_pictures(const Hdf5Reader& file) {
     outline.tow = file.integer(fmt::format("/section/{:06d}/warp", k)) != 0 ? mesoscale::TowDirection::warp
                                                                             : mesoscale::TowDirection::weft;
   }
-  const std::vector<double> corners = file.doubles("/tows");
-  pictures.tows.resize(corners.size() / 9);
-  for (std::size_t i = 0; i < 9 * pictures.tows.size(); ++i)
-    pictures.tows[i / 9][i / 3 % 3][i % 3] = corners[i];
   read_row(file, "/bodies", body_members(pictures.bodies));
   return pictures;
 }

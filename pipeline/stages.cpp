@@ -203,17 +203,15 @@ WeavePictures weave_pictures(const mesoscale::CellSpec& spec) {
   const int tows = std::max(cell.weave.warps, cell.weave.wefts);
   pictures.height = mesoscale::height_field(cell, tows <= 2 ? 96 : std::min(32 * tows, 256));
   pictures.section = mesoscale::warp_cut(cell);
-  const mesoscale::TriMesh mesh = mesoscale::tow_surfaces(cell, tows <= 8 ? 24 : 192 / tows);
-  for (const auto& t : mesh.triangles)
-    pictures.tows.push_back({mesh.vertices[t[0]], mesh.vertices[t[1]], mesh.vertices[t[2]]});
   pictures.bodies = mesoscale::tow_bodies(cell);
   return pictures;
 }
 
-mesoscale::solid::CellVoxels weave_voxels(const mesoscale::CellSpec& spec) {
+CellBodies cell_bodies(const mesoscale::CellSpec& spec) {
   const auto cell = mesoscale::unit_cell(mesoscale::fabric_geometry(spec), 0.0);
   const int tows = std::max(cell.weave.warps, cell.weave.wefts);
-  return mesoscale::solid::cell_voxels(cell, tows <= 8 ? 32 : 256 / tows, 32);
+  return {cell.weave.warps, mesoscale::tow_surfaces(cell, tows <= 8 ? 24 : 192 / tows),
+          mesoscale::solid::cell_voxels(cell, tows <= 8 ? 32 : 256 / tows, 32)};
 }
 
 std::string blank_in_words(const macroscale::BlankSpec& blank) {

@@ -46,13 +46,18 @@ FrictionStage run_friction_stage(const Case& a_case, const mesoscale::FabricProp
 struct WeavePictures {
   mesoscale::HeightField height;
   std::vector<mesoscale::Outline> section;
-  std::vector<Triangle> tows;
   mesoscale::TowBodies bodies;
 };
 WeavePictures weave_pictures(const mesoscale::CellSpec& spec);
 
-/// Voxels of one repeat, 32 a pitch where it has up to eight tows, fewer of larger ones, and 32 through.
-mesoscale::solid::CellVoxels weave_voxels(const mesoscale::CellSpec& spec);
+/// One unsheared repeat in the state of the case, as bodies: 24 stations a pitch and 32 voxels a pitch and
+/// through the thickness where it has up to eight tows, fewer of larger ones, so that no file grows with it.
+struct CellBodies {
+  int warps = 0;
+  mesoscale::TowSurfaces tows;
+  mesoscale::solid::CellVoxels voxels;
+};
+CellBodies cell_bodies(const mesoscale::CellSpec& spec);
 
 /// Size of a blank for titles: "320 x 320 mm", "round 300 mm".
 std::string blank_in_words(const macroscale::BlankSpec& blank);

@@ -133,34 +133,38 @@ class Sampler {
     return (static_cast<std::size_t>(k) * count_[1] + j) * count_[0] + i;
   }
 
+  // Of one row of voxels, all layers: summed layer by layer within the row, which stays in cache.
   void fill_shares(int j) {
-    const std::size_t tows = share_.size();
-    std::vector<double> sums(tows * static_cast<std::size_t>(count_[2]));
-    for (int i = 0; i < count_[0]; ++i) {
-      std::fill(sums.begin(), sums.end(), 0.0);
+    const std::size_t row = static_cast<std::size_t>(count_[0]),
+                      tow = row * static_cast<std::size_t>(count_[2]);
+    std::vector<double> sums(tow * share_.size(), 0.0);
+    for (int i = 0; i < count_[0]; ++i)
       for (int b = 0; b < across_voxel; ++b)
         for (int a = 0; a < across_voxel; ++a)
           for (std::size_t p = 0; p < plies_.size(); ++p) {
             const PlacedPly& ply = plies_[p];
             const Column c = column(cell_, (i + (a + 0.5) / across_voxel) * step_[0] - ply.xi,
                                     (j + (b + 0.5) / across_voxel) * step_[1] - ply.eta);
-            if (c.warp) add(c.warp_bottom + ply.z, c.warp_top + ply.z, warps_of(p), sums);
-            if (c.weft) add(c.weft_bottom + ply.z, c.weft_top + ply.z, wefts_of(p), sums);
+            if (c.warp) add(c.warp_bottom + ply.z, c.warp_top + ply.z, sums.data() + tow * warps_of(p) + i);
+            if (c.weft) add(c.weft_bottom + ply.z, c.weft_top + ply.z, sums.data() + tow * wefts_of(p) + i);
           }
-      for (int k = 0; k < count_[2]; ++k)
-        for (std::size_t tow = 0; tow < tows; ++tow)
-          share_[tow][at(i, j, k)] = static_cast<float>(sums[tows * static_cast<std::size_t>(k) + tow] /
-                                                        (across_voxel * across_voxel * height_));
-    }
+    const double column_volume = across_voxel * across_voxel * height_;
+    for (std::size_t t = 0; t < share_.size(); ++t)
+      for (int k = 0; k < count_[2]; ++k) {
+        const double* from = sums.data() + tow * t + row * static_cast<std::size_t>(k);
+        float* to = share_[t].data() + at(0, j, k);
+        for (std::size_t i = 0; i < row; ++i) to[i] = static_cast<float>(from[i] / column_volume);
+      }
   }
 
-  // The part of a column that a tow fills, to the voxels it passes.
-  void add(double bottom, double top, std::size_t tow, std::vector<double>& sums) const {
+  // The part of a column that a tow fills, to the voxels it passes; `lowest` of them, a row of voxels a
+  // layer.
+  void add(double bottom, double top, double* lowest) const {
     const double low = -0.5 * thickness_;
     const int first = std::clamp(static_cast<int>((bottom - low) / height_), 0, count_[2] - 1);
     const int last = std::clamp(static_cast<int>((top - low) / height_), 0, count_[2] - 1);
     for (int k = first; k <= last; ++k)
-      sums[share_.size() * static_cast<std::size_t>(k) + tow] +=
+      lowest[static_cast<std::ptrdiff_t>(k) * count_[0]] +=
           overlap(low + k * height_, low + (k + 1) * height_, bottom, top);
   }
 

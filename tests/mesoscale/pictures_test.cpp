@@ -14,7 +14,8 @@ using heddle::test::radians;
 using heddle::test::table1;
 
 TEST_CASE("tow surfaces are closed: every edge is run once each way", "[pictures]") {
-  const heddle::TriangleMesh mesh = tow_surfaces(unit_cell(table1(), radians(25.0)), 8, 6);
+  const TowSurfaces surfaces = tow_surfaces(unit_cell(table1(), radians(25.0)), 8, 6);
+  const heddle::TriangleMesh& mesh = surfaces.mesh;
   std::map<std::pair<int, int>, int> edges;
   for (const auto& t : mesh.triangles)
     for (std::size_t k = 0; k < 3; ++k) ++edges[{t[k], t[(k + 1) % 3]}];
@@ -22,13 +23,21 @@ TEST_CASE("tow surfaces are closed: every edge is run once each way", "[pictures
     REQUIRE(count == 1);
     REQUIRE(edges.count({edge.second, edge.first}) == 1);
   }
+  // Four tows, two warps first, whose triangles share no vertex.
+  REQUIRE(surfaces.tow.size() == mesh.triangles.size());
+  std::map<int, int> owner;
+  for (std::size_t t = 0; t < mesh.triangles.size(); ++t)
+    for (const int v : mesh.triangles[t])
+      CHECK(owner.try_emplace(v, surfaces.tow[t]).first->second == surfaces.tow[t]);
+  CHECK(surfaces.tow.front() == 1);
+  CHECK(surfaces.tow.back() == 4);
 }
 
 TEST_CASE("tow surfaces enclose section area times pitch and point outwards", "[pictures]") {
   const double angle = radians(GENERATE(0.0, 25.0));
   const UnitCell cell = unit_cell(table1(), angle);
   const double expected = 4.0 * 2.0 * area(cell.tow[0].section) * cell.tow[0].spacing * std::cos(angle);
-  CHECK(volume(tow_surfaces(cell, 12, 60)) == Approx(expected).epsilon(0.002));
+  CHECK(volume(tow_surfaces(cell, 12, 60).mesh) == Approx(expected).epsilon(0.002));
 }
 
 TEST_CASE("a cut along a warp shows it as a band and every weft as a section", "[pictures]") {

@@ -83,8 +83,9 @@ TEST_CASE("every friction effect is off at its off value to the byte, and linear
   CHECK(at == usual.size());
 }
 
-TEST_CASE("the factor on the rate of shear is 1 and 0 to the byte at the ends of its switch and linear when tiny",
-          "[pipeline][effect]") {
+TEST_CASE(
+    "the factor on the rate of shear is 1 and 0 to the byte at the ends of its switch and linear when tiny",
+    "[pipeline][effect]") {
   const auto with_factor = [](double factor) {
     return run("effects: {shear_rate: {factor: " + pipeline::shortest(factor) + "}}\n");
   };

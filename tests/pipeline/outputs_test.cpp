@@ -295,8 +295,8 @@ TEST_CASE("the manifest holds versions, hashes, machine and the cost of each sta
 }
 
 TEST_CASE("tows are written as binary STL in millimetres with outward normals", "[outputs]") {
-  const std::vector<Triangle> triangles{{{{0, 0, 0}, {1e-3, 0, 0}, {0, 2e-3, 0}}}};
-  const std::string stl = tows_stl(triangles);
+  TriangleMesh mesh{{{0, 0, 0}, {1e-3, 0, 0}, {0, 2e-3, 0}}, {{0, 1, 2}}};
+  const std::string stl = tows_stl(mesh);
   REQUIRE(stl.size() == 80 + 4 + 50);
   CHECK(stl.substr(0, 5) != "solid");  // readers take that for the text form
   std::uint32_t count = 0;
@@ -307,6 +307,8 @@ TEST_CASE("tows are written as binary STL in millimetres with outward normals", 
   CHECK(numbers[2] == 1.0f);
   CHECK(numbers[6] == 1.0f);
   CHECK(numbers[10] == 2.0f);
+  mesh.vertices[1][0] = NAN;
+  CHECK_THROWS_WITH(tows_stl(mesh), Catch::Contains("triangle 0 has a corner at nan"));
 }
 
 TEST_CASE("a file is whole or not there, and its folder is made", "[outputs]") {

@@ -65,8 +65,9 @@ TEST_CASE("the shipped stamping runs small, writes what it promises, and twice t
   const auto a = contents(scratch / "a"), b = contents(scratch / "b");
   for (const char* name :
        {"resolved.yaml", "summary.json", "report.html", "mesoscale/fabric.json", "mesoscale/contact.csv",
-        "mesoscale/tows.stl", "mesoscale/cell.vti", "mesoscale/cell.h5", "friction/friction_test.csv",
-        "friction/curve.csv", "macroscale/history.csv", "macroscale/blank.pvd", "macroscale/blank_0012.vtu"})
+        "mesoscale/tows.stl", "mesoscale/tows.vtu", "mesoscale/cell.vti", "mesoscale/cell.h5",
+        "friction/friction_test.csv", "friction/curve.csv", "macroscale/history.csv", "macroscale/blank.pvd",
+        "macroscale/blank_0012.vtu"})
     CHECK(a.count(name) == 1);
   REQUIRE(a.size() == b.size());
   for (const auto& [name, bytes] : a) {

@@ -172,6 +172,20 @@ TEST_CASE("voxels carry the frame of the cell, x fastest", "[vtu]") {
   CHECK_THROWS_WITH(vti(voxels), Contains("5 labels for 3 x 2 x 1 voxels"));
 }
 
+TEST_CASE("tows are triangles with their number and family", "[vtu]") {
+  heddle::mesoscale::TowSurfaces tows{
+      {{{0, 0, 0}, {1e-3, 0, 0}, {0, 1e-3, 0}, {0, 0, 1e-3}}, {{0, 1, 2}, {1, 3, 2}}}, {1, 2}};
+  const VtkFile file = parse(tows_vtu(tows, 1));
+  CHECK(numbers<std::int64_t>(file, "connectivity") == std::vector<std::int64_t>{0, 1, 2, 1, 3, 2});
+  CHECK(numbers<std::int64_t>(file, "offsets") == std::vector<std::int64_t>{3, 6});
+  CHECK(numbers<std::uint8_t>(file, "types") == std::vector<std::uint8_t>{5, 5});
+  CHECK(numbers<float>(file, "tow") == std::vector<float>{1.0F, 2.0F});
+  CHECK(numbers<float>(file, "family") == std::vector<float>{1.0F, 2.0F});
+  CHECK(numbers<double>(file, "Points")[3] == 1e-3);
+  tows.mesh.triangles[1][1] = 4;
+  CHECK_THROWS_WITH(tows_vtu(tows, 1), Contains("a triangle names point 4 of 4"));
+}
+
 TEST_CASE("data that does not fit the mesh is refused by name", "[vtu]") {
   QuadMesh mesh{{{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0}}, {{0, 1, 2, 3}}, {{"short", 3, {1, 2, 3}}}, {}};
   CHECK_THROWS_WITH(vtu(mesh), Contains("array short"));

@@ -29,7 +29,7 @@ namespace pmp = CGAL::Polygon_mesh_processing;
 
 // The tows of one repeat, warps first, each a closed body of flat triangles.
 std::vector<Body> tow_bodies_of(const UnitCell& cell, int along, int across) {
-  const TriangleMesh mesh = tow_surfaces(cell, along, across);
+  const TriangleMesh mesh = tow_surfaces(cell, along, across).mesh;
   Body all;
   std::vector<Body::Vertex_index> vertex;
   for (const auto& v : mesh.vertices) vertex.push_back(all.add_vertex({v[0], v[1], v[2]}));
