@@ -6,6 +6,7 @@
 
 #include "macroscale/ledger.h"
 #include "macroscale/solve.h"
+#include "tests/macroscale/diagonal_net.h"
 #include "tests/macroscale/sample_fabric.h"
 #include "tests/macroscale/steps.h"
 
@@ -13,52 +14,12 @@ using namespace heddle::macroscale;
 using Eigen::Vector3d;
 using Eigen::VectorXd;
 using heddle::Curve;
+using heddle::test::diagonal_net;
+using heddle::test::frame_torque;
+using heddle::test::in_frame;
 using heddle::test::make_fabric;
 using heddle::test::run_steps;
 using heddle::test::SampleFabric;
-
-namespace {
-
-// Net whose cells carry diagonal springs of stiffness k (force over stretch): dPsi/ds in closed form.
-heddle::mesoscale::FabricProperties diagonal_net(double k) {
-  auto fabric = make_fabric({.bending = 1e-9});
-  std::vector<double> s, t;
-  for (int i = 0; i <= 4000; ++i) {
-    s.push_back(0.9 * i / 4000.0);
-    t.push_back(k * (1.0 / std::sqrt(1.0 - s.back()) - 1.0 / std::sqrt(1.0 + s.back())));
-  }
-  fabric.shear_stress = Curve(s, t);
-  return fabric;
-}
-
-// Picture frame of hinged bars: warp turns by +angle/2, weft by -angle/2 from the square's sides.
-Vector3d in_frame(const Vector3d& reference, double angle) {
-  const double c = std::cos(0.5 * angle), s = std::sin(0.5 * angle);
-  return {c * reference.x() + s * reference.y(), s * reference.x() + c * reference.y(), reference.z()};
-}
-
-// Torque of the frame = power of its bars' reactions over the rate of the angle, by a small turn.
-double frame_torque(const heddle::mesoscale::FabricProperties& fabric, double side, double spacing,
-                    double turned, double angle) {
-  Scene scene;
-  scene.blank = make_blank({side, side}, spacing, turned);
-  scene.fabric = &fabric;
-  System system(scene);
-  State state = initial_state(scene);
-  StepData step;
-  step.start = &state;
-  step.dt = 1.0;
-  const auto energy = [&](double a) {
-    VectorXd x = state.x;
-    for (int i = 0; i < scene.blank.nodes(); ++i) x.segment<3>(3 * i) = in_frame(scene.blank.reference[i], a);
-    step.target = x;
-    return system.potential(step, x).total();
-  };
-  const double h = 1e-5;
-  return (energy(angle + h) - energy(angle - h)) / (2.0 * h);
-}
-
-}  // namespace
 
 TEST_CASE("V3: picture frame torque of a net with diagonal springs is the closed form",
           "[macroscale][verification]") {
