@@ -2,7 +2,7 @@
 
 #include <algorithm>
 #include <atomic>
-#include <cassert>
+#include <mutex>
 
 #include <tbb/task_group.h>
 #include <Eigen/Core>
@@ -120,28 +120,47 @@ struct MultifrontalFactor::Implementation {
   // Subtrees with more work than this have their branches run side by side.
   bool branches(int s) const { return work[s] > total_work / 16.0; }
 
-  // Updates live in one block of memory: a parent's before its children's, so that a subtree done one after
-  // the other needs a path's and siblings' room, and branches that run side by side have rooms of their own.
+  // A subtree done by one thread has its updates in one room, a parent's before its children's: what is
+  // needed is a path's and its siblings'. Updates of branching supernodes and of those below them live by
+  // themselves, from their making until the parent has taken them.
   void lay_out_updates() {
-    update_start.resize(nodes.count());
-    std::size_t end = 0;
-    for (const int root : roots) end = lay_out(root, end);
-    updates.reset(new double[std::max<std::size_t>(end, 1)]);  // not touched before it is needed
+    update_start.assign(nodes.count(), 0);
+    update.assign(nodes.count(), nullptr);
+    own.resize(nodes.count());
+    for (int s = 0; s < nodes.count(); ++s)
+      if (!branches(s) && lives_by_itself(s)) room_size = std::max(room_size, lay_out_children(s, 0));
   }
+  bool lives_by_itself(int s) const { return parent[s] < 0 || branches(parent[s]); }
 
-  std::size_t lay_out(int s, std::size_t begin) {
-    update_start[s] = begin;
-    std::size_t next = begin + update_size(s), end = next;
+  std::size_t lay_out_children(int s, std::size_t begin) {
+    std::size_t next = begin, end = begin;
     for (const int child : children[s]) {
-      end = std::max(end, lay_out(child, next));
-      next = branches(s) ? end : next + update_size(child);
+      update_start[child] = next;
+      next += update_size(child);
+      end = std::max({end, next, lay_out_children(child, next)});
     }
     return end;
   }
 
+  // As many rooms as subtrees are under way.
+  std::unique_ptr<double[]> take_room() {
+    const std::lock_guard lock(rooms_in_use);
+    if (rooms.empty()) return std::unique_ptr<double[]>(new double[room_size]);  // not touched before needed
+    auto room = std::move(rooms.back());
+    rooms.pop_back();
+    return room;
+  }
+  void give_back(std::unique_ptr<double[]> room) {
+    const std::lock_guard lock(rooms_in_use);
+    rooms.push_back(std::move(room));
+  }
+
   void run(int s) {
     if (!branches(s)) {  // a subtree is a range of supernodes, children before parents
+      auto room = take_room();
+      for (int k = first[s]; k < s; ++k) update[k] = room.get() + update_start[k];
       for (int k = first[s]; k <= s && !failed; ++k) eliminate(k);
+      give_back(std::move(room));
       return;
     }
     tbb::task_group side_by_side;
@@ -163,28 +182,35 @@ struct MultifrontalFactor::Implementation {
       failed = true;
       return;
     }
-    if (m == 0) return;
+    if (m > 0) make_update(s, panel);
+    for (const int child : children[s]) own[child].reset();
+  }
+
+  void make_update(int s, double* panel) {
+    const int n = columns(s), m = below(s), all = rows(s);
     const double one = 1.0, minus = -1.0, zero = 0.0;
-    double* update = &updates[update_start[s]];
+    if (lives_by_itself(s)) {
+      own[s].reset(new double[update_size(s)]);
+      update[s] = own[s].get();
+    }
     dtrsm_("R", "L", "T", "N", &m, &n, &one, panel, &all, panel + n, &all);
-    dsyrk_("L", "N", &m, &n, &minus, panel + n, &all, &zero, update, &m);
-    for (const int child : children[s]) add_update(child, update, m, n, all);
+    dsyrk_("L", "N", &m, &n, &minus, panel + n, &all, &zero, update[s], &m);
+    for (const int child : children[s]) add_update(child, update[s], m, n, all);
   }
 
   // Adds those columns of a child's update that its parent has between `begin` and `end` to a dense lower
   // triangle whose first row and column is the parent's row `begin`.
   void add_update(int child, double* target, int stride, int begin, int end) const {
     const int m = below(child);
-    const double* update = &updates[update_start[child]];
     for (int r = run_start[child]; r < run_start[child + 1]; ++r) {
       const Run& run = runs[r];
       if (run.to < begin || run.to >= end) continue;  // no run crosses the parent's last own column
       for (int k = 0; k < run.length; ++k) {
-        const double* source = update + static_cast<std::size_t>(run.from + k) * m;
-        double* column = target + static_cast<std::size_t>(run.to + k - begin) * stride - begin;
-        add(source + run.from + k, column + run.to + k, run.length - k);
+        const double* source = update[child] + static_cast<std::size_t>(run.from + k) * m;
+        double* column = target + static_cast<std::size_t>(run.to + k - begin) * stride;
+        add(source + run.from + k, column + (run.to + k - begin), run.length - k);
         for (int below_run = r + 1; below_run < run_start[child + 1]; ++below_run)
-          add(source + runs[below_run].from, column + runs[below_run].to, runs[below_run].length);
+          add(source + runs[below_run].from, column + (runs[below_run].to - begin), runs[below_run].length);
       }
     }
   }
@@ -213,7 +239,11 @@ struct MultifrontalFactor::Implementation {
   std::vector<Entry> entries;
   std::vector<Run> runs;
   std::vector<std::size_t> update_start;
-  std::unique_ptr<double[]> updates;
+  std::vector<double*> update;                 ///< of each supernode, while it lives
+  std::vector<std::unique_ptr<double[]>> own;  ///< of those that live by themselves
+  std::size_t room_size = 0;
+  std::vector<std::unique_ptr<double[]>> rooms;  ///< free
+  std::mutex rooms_in_use;
 
   // Of the factorisation that is going on.
   const double* matrix = nullptr;
