@@ -125,7 +125,7 @@ class System {
 
   // Blocks of the lower triangle by node columns: rows >= column, 3 x 3 each, column-major.
   std::vector<int> block_start_, block_row_;
-  std::vector<double> constant_;  ///< bending and twist
+  std::vector<double> constant_;  ///< bending and twist: a multiple of the unit matrix in each block
   std::vector<double> blocks_;
   std::vector<std::vector<double>> body_row_;  ///< coupling of each loaded tool with every node unknown
   std::vector<double> body_diagonal_;
