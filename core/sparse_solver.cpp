@@ -2,10 +2,13 @@
 
 #include <algorithm>
 #include <cstring>
+#include <optional>
 #include <stdexcept>
 
 #include <cholmod.h>
 #include <fmt/format.h>
+
+#include "core/multifrontal.h"
 
 // OpenBLAS's own calls; its headers are not needed for them. They also make sure at link time that it is
 // OpenBLAS that serves CHOLMOD: the reference BLAS takes 4 to 8 times longer.
@@ -19,8 +22,23 @@ void omp_set_max_active_levels(int levels);
 
 namespace heddle {
 
+namespace {
+
+Supernodes supernodes_of(const cholmod_factor& factor) {
+  const auto copy = [](const void* from, std::size_t n) {
+    const int* begin = static_cast<const int*>(from);
+    return std::vector<int>(begin, begin + n);
+  };
+  const std::vector<int> panels = copy(factor.px, factor.nsuper + 1);
+  return {copy(factor.super, factor.nsuper + 1), copy(factor.pi, factor.nsuper + 1),
+          copy(factor.s, factor.ssize), std::vector<std::size_t>(panels.begin(), panels.end())};
+}
+
+}  // namespace
+
 struct SparseSolver::Implementation {
-  explicit Implementation(SymmetricPattern p) : pattern(std::move(p)), values(pattern.row.size(), 0.0) {
+  Implementation(SymmetricPattern p, Factorisation by)
+      : pattern(std::move(p)), values(pattern.row.size(), 0.0) {
     // One thread a factorisation: a second BLAS thread gains nothing below 50 k nodes and costs
     // reproducibility.
     openblas_set_num_threads(1);
@@ -34,13 +52,14 @@ struct SparseSolver::Implementation {
     common.nmethods = 1;
     common.method[0].ordering = CHOLMOD_METIS;
     common.postorder = 1;
-    // Wider relaxed supernodes: 20 to 30 % faster factorisation for the 13-node stencil of a woven sheet.
-    common.nrelax[0] = 16;
-    common.nrelax[1] = 48;
-    common.nrelax[2] = 128;
-    common.zrelax[0] = 0.9;
-    common.zrelax[1] = 0.4;
-    common.zrelax[2] = 0.15;
+    // Relaxed supernodes a little wider than CHOLMOD's own (4, 16, 48; 0.8, 0.1, 0.05), with fewer zeros. For
+    // the 13-node stencil of a woven sheet: docs/decisions/factorisation.md.
+    common.nrelax[0] = 8;
+    common.nrelax[1] = 24;
+    common.nrelax[2] = 64;
+    common.zrelax[0] = 0.5;
+    common.zrelax[1] = 0.1;
+    common.zrelax[2] = 0.03;
 
     matrix.nrow = matrix.ncol = static_cast<std::size_t>(pattern.size);
     matrix.nzmax = pattern.row.size();
@@ -57,6 +76,12 @@ struct SparseSolver::Implementation {
     if (!factor)
       throw std::runtime_error(
           fmt::format("CHOLMOD could not analyse the pattern (status {})", common.status));
+    if (by == Factorisation::cholmod) return;
+    multifrontal.emplace(pattern, std::span(static_cast<const int*>(factor->Perm), factor->n),
+                         supernodes_of(*factor));
+    // Room for the panels, which CHOLMOD's solution reads.
+    if (!cholmod_change_factor(CHOLMOD_REAL, 1, 1, 1, 1, factor, &common))
+      throw std::runtime_error(fmt::format("no memory for a factor of {} values", factor->xsize));
   }
   ~Implementation() {
     cholmod_free_dense(&solution, &common);
@@ -73,11 +98,12 @@ struct SparseSolver::Implementation {
   cholmod_common common{};
   cholmod_sparse matrix{};
   cholmod_factor* factor = nullptr;
+  std::optional<MultifrontalFactor> multifrontal;
   cholmod_dense *solution = nullptr, *work_y = nullptr, *work_e = nullptr;  ///< kept between solves
 };
 
-SparseSolver::SparseSolver(SymmetricPattern pattern)
-    : implementation_(std::make_unique<Implementation>(std::move(pattern))) {}
+SparseSolver::SparseSolver(SymmetricPattern pattern, Factorisation by)
+    : implementation_(std::make_unique<Implementation>(std::move(pattern), by)) {}
 SparseSolver::~SparseSolver() = default;
 SparseSolver::SparseSolver(SparseSolver&&) noexcept = default;
 SparseSolver& SparseSolver::operator=(SparseSolver&&) noexcept = default;
@@ -92,6 +118,9 @@ std::span<double> SparseSolver::values() {
 bool SparseSolver::factorise() {
   auto& self = *implementation_;
   self.common.quick_return_if_not_posdef = 1;
+  if (self.multifrontal)
+    return self.multifrontal->factorise(self.values,
+                                        {static_cast<double*>(self.factor->x), self.factor->xsize});
   cholmod_factorize(&self.matrix, self.factor, &self.common);
   if (self.common.status == CHOLMOD_NOT_POSDEF) return false;
   if (self.common.status < CHOLMOD_OK)

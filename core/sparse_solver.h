@@ -15,12 +15,15 @@ struct SymmetricPattern {
   std::vector<int> row;
 };
 
-/// Direct solver for symmetric positive definite systems (CHOLMOD, supernodal): one symbolic analysis a
-/// pattern, any number of numeric factorisations. One BLAS thread, so that results do not depend on the
-/// machine's load.
+/// Who does the numeric factorisation. CHOLMOD's own is there to be measured against.
+enum class Factorisation { multifrontal, cholmod };
+
+/// Direct solver for symmetric positive definite systems: ordered and analysed by CHOLMOD (METIS, relaxed
+/// supernodes) once a pattern, any number of numeric factorisations (core/multifrontal.h). One BLAS thread
+/// and sums in one order, so that results do not depend on threads or the machine's load.
 class SparseSolver {
  public:
-  explicit SparseSolver(SymmetricPattern pattern);
+  explicit SparseSolver(SymmetricPattern pattern, Factorisation by = Factorisation::multifrontal);
   ~SparseSolver();
   SparseSolver(SparseSolver&&) noexcept;
   SparseSolver& operator=(SparseSolver&&) noexcept;

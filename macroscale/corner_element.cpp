@@ -3,8 +3,9 @@
 #include <algorithm>
 #include <cmath>
 
-#include <Eigen/Cholesky>
 #include <Eigen/Geometry>
+
+#include "macroscale/corner_filter.h"
 
 namespace heddle::macroscale {
 
@@ -51,62 +52,6 @@ Vector3d sine_slope_a(const CornerPoint& k) {
 }
 Vector3d sine_slope_b(const CornerPoint& k) {
   return (k.p - k.s * k.q) / k.lb;
-}
-
-// Nearest positive semi-definite matrix of a symmetric 2 x 2, closed form.
-void make_positive(double& xx, double& xy, double& yy) {
-  const double mean = 0.5 * (xx + yy), half = 0.5 * (xx - yy);
-  const double radius = std::hypot(half, xy);
-  const double low = mean - radius, high = mean + radius;
-  if (low >= 0.0) return;
-  if (high <= 0.0) {
-    xx = xy = yy = 0.0;
-    return;
-  }
-  // Projector on the upper eigenvector, times its eigenvalue.
-  const double cos2 = half / radius, sin2 = xy / radius;
-  xx = 0.5 * high * (1.0 + cos2);
-  yy = 0.5 * high * (1.0 - cos2);
-  xy = 0.5 * high * sin2;
-}
-
-// One rotation of Jacobi's method: annihilates m(i, j), collects the rotation in v.
-void rotate(Eigen::Matrix4d& m, Eigen::Matrix4d& v, int i, int j) {
-  if (m(i, j) == 0.0) return;
-  const double theta = (m(j, j) - m(i, i)) / (2.0 * m(i, j));
-  const double t = std::copysign(1.0, theta) / (std::abs(theta) + std::sqrt(theta * theta + 1.0));
-  const double c = 1.0 / std::sqrt(t * t + 1.0), s = t * c;
-  for (int k = 0; k < 4; ++k) {
-    const double ki = m(k, i), kj = m(k, j);
-    m(k, i) = c * ki - s * kj;
-    m(k, j) = s * ki + c * kj;
-  }
-  for (int k = 0; k < 4; ++k) {
-    const double ik = m(i, k), jk = m(j, k);
-    m(i, k) = c * ik - s * jk;
-    m(j, k) = s * ik + c * jk;
-    const double vi = v(k, i), vj = v(k, j);
-    v(k, i) = c * vi - s * vj;
-    v(k, j) = s * vi + c * vj;
-  }
-}
-
-// Nearest positive semi-definite matrix of a symmetric 4 x 4, by Jacobi's method.
-void make_positive(Eigen::Matrix4d& m) {
-  // Almost every corner is positive already; a Cholesky attempt is ten times cheaper than the eigenvalues.
-  if (Eigen::LLT<Eigen::Matrix4d>(m).info() == Eigen::Success) return;
-  Eigen::Matrix4d v = Eigen::Matrix4d::Identity();
-  const double small = 1e-28 * m.squaredNorm();
-  for (int sweep = 0; sweep < 12; ++sweep) {
-    double off = 0.0;
-    for (int i = 0; i < 4; ++i)
-      for (int j = i + 1; j < 4; ++j) off += m(i, j) * m(i, j);
-    if (off <= small) break;
-    for (int i = 0; i < 4; ++i)
-      for (int j = i + 1; j < 4; ++j) rotate(m, v, i, j);
-  }
-  const Eigen::Vector4d kept = m.diagonal().cwiseMax(0.0);
-  m = v * kept.asDiagonal() * v.transpose();
 }
 
 }  // namespace
@@ -157,50 +102,49 @@ CornerHessian corner_hessian(const CornerLaw& law, const Vector3d& a, const Vect
   return corner_hessian(law, corner_point(law, a, b, angle_before), filter);
 }
 
+// Second derivatives in polar components: along and across each edge in the plane of both, and out of it.
+// Energies that depend on |a|, |b| and the angle between them couple these in a ring
+// (macroscale/corner_filter.h).
 CornerHessian corner_hessian(const CornerLaw& law, const CornerPoint& k, Filter filter) {
   const Surface::Value& w = k.tension;
   const double f1 = k.shear.first + k.rate.first, f2 = k.shear.second + k.rate.second;
-
-  // Frame of the corner: t1 = p, t2 in the plane of both tows, t3 normal. Out of plane the two edge
-  // components decouple from the four in-plane ones, so a 2 x 2 and a 4 x 4 block hold everything.
-  const Vector3d t2 = (k.q - k.s * k.p) / k.c;
-  const Vector3d t3 = k.p.cross(t2);
   const double n1 = w.fx / law.length_warp, n2 = w.fy / law.length_weft;  // tension per length of edge
+  const double ia = 1.0 / k.la, ib = 1.0 / k.lb;
+  // With s = cos(phi), phi the angle between the edges: -d/d phi and d2/d phi2 of the shear terms.
+  const double torque = f1 * k.c, turning = f2 * k.c * k.c - f1 * k.s;
 
-  // e_ww of |a| is 1/|a| across the edge; s has second derivatives -s/|a|^2, -s/|b|^2 and 1/(|a||b|) out of
-  // plane.
-  double oaa = law.area * (n1 / k.la - f1 * k.s / (k.la * k.la));
-  double obb = law.area * (n2 / k.lb - f1 * k.s / (k.lb * k.lb));
-  double oab = law.area * f1 / (k.la * k.lb);
+  CornerRing ring;
+  ring.along_a = law.area * w.fxx / (law.length_warp * law.length_warp);
+  ring.along_b = law.area * w.fyy / (law.length_weft * law.length_weft);
+  ring.across_a = law.area * (n1 * ia + turning * ia * ia);
+  ring.across_b = law.area * (n2 * ib + turning * ib * ib);
+  ring.along = law.area * w.fxy / (law.length_warp * law.length_weft);
+  ring.across = -law.area * turning * ia * ib;
+  ring.turn_a = -law.area * torque * ia * ia;
+  ring.turn_b = law.area * torque * ib * ib;
+  Symmetric2 normal{law.area * (n1 * ia - f1 * k.s * ia * ia), law.area * f1 * ia * ib,
+                    law.area * (n2 * ib - f1 * k.s * ib * ib)};
 
-  // In plane, in the frame (t1, t2): p = (1, 0), q = (s, c).
-  const Eigen::Vector2d p(1.0, 0.0), q(k.s, k.c);
-  const Eigen::Matrix2d I = Eigen::Matrix2d::Identity();
-  const Eigen::Matrix2d pp = p * p.transpose(), qq = q * q.transpose(), pq = p * q.transpose();
-  const Eigen::Vector2d sa = (q - k.s * p) / k.la, sb = (p - k.s * q) / k.lb;
-  Eigen::Matrix2d saa = (-(pq + pq.transpose()) - k.s * I + 3.0 * k.s * pp) / (k.la * k.la);
-  Eigen::Matrix2d sbb = (-(pq + pq.transpose()) - k.s * I + 3.0 * k.s * qq) / (k.lb * k.lb);
-  Eigen::Matrix2d sab = (I - pp - qq + k.s * pq) / (k.la * k.lb);
-  Eigen::Matrix4d in_plane;
-  in_plane.topLeftCorner<2, 2>() = w.fxx / (law.length_warp * law.length_warp) * pp + n1 / k.la * (I - pp) +
-                                   f2 * sa * sa.transpose() + f1 * saa;
-  in_plane.bottomRightCorner<2, 2>() = w.fyy / (law.length_weft * law.length_weft) * qq +
-                                       n2 / k.lb * (I - qq) + f2 * sb * sb.transpose() + f1 * sbb;
-  in_plane.topRightCorner<2, 2>() =
-      w.fxy / (law.length_warp * law.length_weft) * pq + f2 * sa * sb.transpose() + f1 * sab;
-  in_plane.bottomLeftCorner<2, 2>() = in_plane.topRightCorner<2, 2>().transpose();
-  in_plane *= law.area;
-
-  if (filter != Filter::none) {
-    make_positive(oaa, oab, obb);
-    make_positive(in_plane);
+  const Vector3d pt = (k.q - k.s * k.p) / k.c,
+                 qt = (k.s * k.q - k.p) / k.c;  // across p and q, in their plane
+  const Vector3d n = k.p.cross(pt);
+  if (filter == Filter::none) {
+    const Matrix3d nn = n * n.transpose();
+    const Vector3d pa = ring.along_a * k.p + ring.turn_a * pt, ta = ring.turn_a * k.p + ring.across_a * pt;
+    const Vector3d qb = ring.along_b * k.q + ring.turn_b * qt, tb = ring.turn_b * k.q + ring.across_b * qt;
+    return {pa * k.p.transpose() + ta * pt.transpose() + normal.xx * nn,
+            ring.along * k.p * k.q.transpose() + ring.across * pt * qt.transpose() + normal.xy * nn,
+            qb * k.q.transpose() + tb * qt.transpose() + normal.yy * nn};
   }
-  Eigen::Matrix<double, 3, 2> frame;
-  frame << k.p, t2;
-  const Matrix3d nn = t3 * t3.transpose();
-  return {frame * in_plane.topLeftCorner<2, 2>() * frame.transpose() + oaa * nn,
-          frame * in_plane.topRightCorner<2, 2>() * frame.transpose() + oab * nn,
-          frame * in_plane.bottomRightCorner<2, 2>() * frame.transpose() + obb * nn};
+  normal = positive_part(normal);
+  const Eigen::Matrix4d plane = positive_part(ring);  // a along, a across, b along, b across
+  Eigen::Matrix<double, 3, 2> at, bt;
+  at << k.p, pt;
+  bt << k.q, qt;
+  const Matrix3d nn = n * n.transpose();
+  return {at * plane.topLeftCorner<2, 2>() * at.transpose() + normal.xx * nn,
+          at * plane.topRightCorner<2, 2>() * bt.transpose() + normal.xy * nn,
+          bt * plane.bottomRightCorner<2, 2>() * bt.transpose() + normal.yy * nn};
 }
 
 }  // namespace heddle::macroscale

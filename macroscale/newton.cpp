@@ -153,7 +153,7 @@ class Choice {
 
 void polish(System& system, const StepData& step, VectorXd& x, StepSummary& summary) {
   constexpr int most = 3;
-  Position at;
+  Position& at = system.room().at;
   system.evaluate(step, x, at);
   VectorXd g = system.gradient(step, at);
   for (int k = 0; k < most; ++k) {
@@ -172,7 +172,7 @@ void polish(System& system, const StepData& step, VectorXd& x, StepSummary& summ
 
 Pass minimise(System& system, const StepData& step, VectorXd& x, const SolveOptions& options,
               double tolerance, StepSummary& summary) {
-  Position at, trial;
+  auto& [at, trial] = system.room();
   system.evaluate(step, x, at);
   if (std::string lost = node_beyond_tools(system, at); !lost.empty())
     return {false, std::move(lost), false, FailureKind::lost_tool};

@@ -39,6 +39,12 @@ struct Position {
   std::vector<std::vector<FrictionResponse>> friction;  ///< the same; empty without friction
 };
 
+/// Two positions to work in, of hundreds of bytes a node: kept between searches, so that only the first one
+/// has to get their memory from the system.
+struct SearchRoom {
+  Position at, trial;
+};
+
 /// Energies of the incremental potential at one position [J]; friction only as a difference (see below).
 struct PotentialTerms {
   double inertia = 0.0, tow = 0.0, shear = 0.0, rate = 0.0, bending = 0.0, twist = 0.0, compaction = 0.0;
@@ -80,6 +86,7 @@ class System {
   void assemble(const StepData& step, const Eigen::VectorXd& x, Filter filter, double shift = 0.0);
 
   SparseSolver& solver() { return *solver_; }
+  SearchRoom& room() { return room_; }
   /// Largest diagonal entry of the last assembled matrix [N/m].
   double largest_diagonal() const;
 
@@ -118,7 +125,7 @@ class System {
 
   // Blocks of the lower triangle by node columns: rows >= column, 3 x 3 each, column-major.
   std::vector<int> block_start_, block_row_;
-  std::vector<double> constant_;  ///< bending and twist
+  std::vector<double> constant_;  ///< bending and twist: a multiple of the unit matrix in each block
   std::vector<double> blocks_;
   std::vector<std::vector<double>> body_row_;  ///< coupling of each loaded tool with every node unknown
   std::vector<double> body_diagonal_;
@@ -130,6 +137,7 @@ class System {
   std::array<std::vector<int>, 4>
       colours_;  ///< quads that share no node, assembled in parallel without locks
   std::unique_ptr<SparseSolver> solver_;
+  SearchRoom room_;
 };
 
 }  // namespace heddle::macroscale

@@ -91,10 +91,9 @@ void System::build_pattern() {
 }
 
 void System::assemble_constant() {
-  constant_.assign(blocks_.size(), 0.0);
+  constant_.assign(block_row_.size(), 0.0);
   const auto add = [&](int a, int b, double value) {
-    double* target = &constant_[9 * block(std::max(a, b), std::min(a, b))];
-    for (int c = 0; c < 3; ++c) target[4 * c] += value;
+    constant_[block(std::max(a, b), std::min(a, b))] += value;
   };
   for (const TowTriple& t : scene_.blank.triples) {
     const double k = bending_stiffness(t);
@@ -170,12 +169,15 @@ void System::add_contact(const StepData& step, const Position& at, Filter filter
 }
 
 void System::assemble(const StepData& step, const Position& at, Filter filter, double shift) {
-  blocks_ = constant_;
   const double inverse_dt2 = 1.0 / (step.dt * step.dt);
   for_each(scene_.blank.nodes(), [&](int i) {
     const double diagonal =
         mass_[3 * i] * inverse_dt2 + scene_.stabilisation * scene_.blank.node_area[i] / step.dt;
-    for (int c = 0; c < 3; ++c) blocks_[9 * block_start_[i] + 4 * c] += diagonal;
+    for (int k = block_start_[i]; k < block_start_[i + 1]; ++k) {
+      const double alike = k == block_start_[i] ? constant_[k] + diagonal : constant_[k];
+      Eigen::Map<Matrix3d> target(&blocks_[9 * k]);
+      target = alike * Matrix3d::Identity();
+    }
   });
   add_corners(step, at, filter);
   add_contact(step, at, filter);

@@ -3,7 +3,10 @@
 #include <Eigen/Eigenvalues>
 #include <Eigen/Geometry>
 
+#include <random>
+
 #include "macroscale/corner_element.h"
+#include "macroscale/corner_filter.h"
 #include "tests/derivative_check.h"
 #include "tests/macroscale/sample_fabric.h"
 
@@ -68,6 +71,12 @@ Matrix6 hessian_of(const CornerLaw& law, const Vector6& y, double before, Filter
   return m;
 }
 
+template <class Matrix>
+Matrix nearest_positive(const Matrix& m) {
+  const Eigen::SelfAdjointEigenSolver<Matrix> e(m);
+  return e.eigenvectors() * e.eigenvalues().cwiseMax(0.0).asDiagonal() * e.eigenvectors().transpose();
+}
+
 }  // namespace
 
 TEST_CASE("corner forces are the slope of the corner energy, stiffness the slope of the forces",
@@ -104,9 +113,51 @@ TEST_CASE("filtered corner stiffness has no negative eigenvalue and keeps the po
   const Eigen::SelfAdjointEigenSolver<Matrix6> e(exact), f(filtered);
   REQUIRE(e.eigenvalues()[0] < 0.0);  // else the filter had nothing to do
   CHECK(f.eigenvalues()[0] > -1e-9 * f.eigenvalues()[5]);
-  const Matrix6 expected =
-      e.eigenvectors() * e.eigenvalues().cwiseMax(0.0).asDiagonal() * e.eigenvectors().transpose();
-  CHECK((filtered - expected).norm() < 1e-9 * exact.norm());
+  CHECK((filtered - nearest_positive(exact)).norm() < 1e-12 * exact.norm());
+}
+
+TEST_CASE("the closed-form filter gives the nearest positive matrix at random corners, as eigenvalues say",
+          "[macroscale][corner]") {
+  const CornerLaw law = law_with_rate();
+  std::mt19937 random(7);
+  std::uniform_real_distribution<double> off(-0.6, 0.6), angle(-1.2, 1.2);
+  int indefinite = 0;
+  double worst = 0.0;
+  for (int k = 0; k < 2000; ++k) {
+    Vector6 y;
+    y << 4e-3 * (1.0 + 0.02 * off(random)), 4e-3 * off(random), 4e-3 * off(random), 5e-3 * off(random),
+        5e-3 * (1.0 + 0.3 * off(random)), 5e-3 * off(random);
+    const double before = angle(random);
+    const Matrix6 exact = hessian_of(law, y, before, Filter::none);
+    indefinite += Eigen::SelfAdjointEigenSolver<Matrix6>(exact).eigenvalues()[0] < 0.0;
+    const Matrix6 filtered = hessian_of(law, y, before, Filter::positive);
+    worst = std::max(worst, (filtered - nearest_positive(exact)).norm() / exact.norm());
+  }
+  CHECK(indefinite > 300);
+  CHECK(worst < 1e-12);
+}
+
+TEST_CASE("rings of any size and sign, with couplings missing, are filtered as eigenvalues say",
+          "[macroscale][corner]") {
+  std::mt19937 random(11);
+  std::uniform_real_distribution<double> sign(-1.0, 1.0), power(-6.0, 6.0);
+  std::bernoulli_distribution missing(0.2);
+  const auto entry = [&] { return missing(random) ? 0.0 : sign(random) * std::pow(10.0, power(random)); };
+  double worst = 0.0;
+  int by_count[5] = {};
+  for (int k = 0; k < 5000; ++k) {
+    const CornerRing ring{std::abs(entry()), entry(), std::abs(entry()), entry(),
+                          entry(),           entry(), entry(),           entry()};
+    const Eigen::Matrix4d m = matrix_of(ring);
+    if (m.norm() == 0.0) continue;
+    const Eigen::SelfAdjointEigenSolver<Eigen::Matrix4d> e(m);
+    ++by_count[(e.eigenvalues().array() < 0.0).count()];
+    worst = std::max(worst, (positive_part(ring) - nearest_positive(m)).norm() / m.norm());
+  }
+  for (int negative : {0, 1, 2}) CHECK(by_count[negative] > 50);
+  CHECK(worst < 1e-12);
+  const Eigen::Matrix4d identity = positive_part(CornerRing{1.0, 1.0, 1.0, 1.0, 0.0, 0.0, 0.0, 0.0});
+  CHECK(identity == Eigen::Matrix4d::Identity());
 }
 
 TEST_CASE("a turned corner has the same energy and turned forces", "[macroscale][corner][invariant]") {
