@@ -20,6 +20,7 @@ friction::Context context_of(const Scene& scene, double pressure, double shear_a
   context.pressure = pressure;
   context.fabric_temperature = scene.blank_temperature;
   context.tool_temperature = scene.tool_temperature;
+  context.shear_angle = shear_angle;
   if (scene.contact_pressure == ContactPressure::real) {
     const auto floored = friction::floored(pressure);
     const auto area = scene.fabric->contact.evaluate(floored.value, shear_angle);
@@ -29,19 +30,27 @@ friction::Context context_of(const Scene& scene, double pressure, double shear_a
   return context;
 }
 
-// Slip direction against the warp, both in the tangent plane of the contact [rad]; 0 at rest.
-double slip_angle(const Scene& scene, const VectorXd& x, int node, const Vector3d& normal,
-                  const Vector3d& v) {
-  const Blank& blank = scene.blank;
+// How the tows run at a node, from its neighbours on both tow lines [m].
+struct Tows {
+  Vector3d warp, weft;
+};
+
+Tows tows_at(const Blank& blank, const VectorXd& x, int node) {
   const auto [i, j] = blank.grid[node];
-  const auto neighbour = [&](int line) {
-    const int n = line < 0 || line > blank.nu ? -1 : blank.node(line, j);
-    return n < 0 ? node : n;
+  const auto neighbour = [&](int line_i, int line_j) -> Vector3d {
+    const bool outside = line_i < 0 || line_j < 0 || line_i > blank.nu || line_j > blank.nv;
+    const int n = outside ? -1 : blank.node(line_i, line_j);
+    return x.segment<3>(3 * (n < 0 ? node : n));
   };
-  const int before = neighbour(i - 1), after = neighbour(i + 1);
-  const Vector3d tow = x.segment<3>(3 * after) - x.segment<3>(3 * before);
-  const Vector3d warp = tow - normal.dot(tow) * normal, slip = v - normal.dot(v) * normal;
-  return std::atan2(normal.dot(warp.cross(slip)), warp.dot(slip));
+  return {neighbour(i + 1, j) - neighbour(i - 1, j), neighbour(i, j + 1) - neighbour(i, j - 1)};
+}
+
+// Slip direction against the warp in the tangent plane of the contact, growing towards the weft whichever
+// face of the sheet the tool touches [rad]; 0 at rest.
+double slip_angle(const Tows& tows, const Vector3d& normal, const Vector3d& v) {
+  const Vector3d warp = tows.warp - normal.dot(tows.warp) * normal, slip = v - normal.dot(v) * normal;
+  const double side = normal.dot(tows.warp.cross(tows.weft)) < 0.0 ? -1.0 : 1.0;
+  return std::atan2(side * normal.dot(warp.cross(slip)), warp.dot(slip));
 }
 
 }  // namespace
@@ -64,7 +73,7 @@ FrictionPoints freeze(const System& system, const StepData& step, const VectorXd
       point.context = context_of(scene, contact.pressure, shear_angle[i]);
       point.context.time_step = step.dt;
       point.context.slip_angle =
-          slip_angle(scene, x, i, point.normal, system.relative_velocity(step, x, k, i));
+          slip_angle(tows_at(scene.blank, x, i), point.normal, system.relative_velocity(step, x, k, i));
     });
   return points;
 }
