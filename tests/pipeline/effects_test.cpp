@@ -96,8 +96,9 @@ TEST_CASE("friction along the trellis is off at its off value to the byte, and l
   CHECK(twice == Approx(2.0 * once).epsilon(0.01));
 }
 
-TEST_CASE("the factor on the rate of shear is 1 and 0 to the byte at the ends of its switch and linear when tiny",
-          "[pipeline][effect]") {
+TEST_CASE(
+    "the factor on the rate of shear is 1 and 0 to the byte at the ends of its switch and linear when tiny",
+    "[pipeline][effect]") {
   const auto with_factor = [](double factor) {
     return run("effects: {shear_rate: {factor: " + pipeline::shortest(factor) + "}}\n");
   };
