@@ -190,6 +190,18 @@ void check_effect(const Effect& effect, Problems& problems) {
   check_fields(effect, fmt::format("effects.{}", About<Effect>::id), problems);
 }
 
+void check_effect(const Orientation& effect, Problems& problems) {
+  check_fields(effect, "effects.orientation", problems);
+  require(
+      problems, effect.form == Orientation::Form::tows || effect.amplitude < 1.0,
+      {.id = "effects.orientation.trellis"_rule,
+       .key = "effects.orientation.amplitude",
+       .value = fmt::format("{}", effect.amplitude),
+       .rule = "must satisfy A < 1 in the form trellis",
+       .way_out = "Friction across the long diagonal would turn negative; the film of Table 1's weave gives "
+                  "up to 0.5."});
+}
+
 void check_effect(const ToolTemperatureShift& effect, Problems& problems) {
   require(problems, std::abs(effect.slope) <= 0.1,
           {.id = "effects.tool_temperature_shift.slope.range"_rule,

@@ -13,6 +13,9 @@ struct Context {
   /// theta: slip direction against the warp [rad]. Held (lagged) over a step: mu(theta) v/|v| has no
   /// potential, so no slope to it is given.
   double slip_angle = 0.0;
+  /// gamma: trellis shear angle, > 0 where warp and weft turn towards each other on the side where theta
+  /// grows from warp to weft [rad]. Held like theta.
+  double shear_angle = 0.0;
   /// dt [s]: how long the step lasts over which the memory advances; 0 = it stays as it is.
   double time_step = 0.0;
 };

@@ -91,8 +91,9 @@ struct Inputs {
   Sensitive slip_speed, pressure, fabric_temperature, tool_temperature;
   Sensitive slip, dwell, age, load_slip, slip_resistance;
   Sensitive area_fraction;
-  double slip_angle = 0.0;  ///< [rad], frozen in the lag
-  double time_step = 0.0;   ///< [s]
+  double slip_angle = 0.0;   ///< [rad], frozen in the lag
+  double shear_angle = 0.0;  ///< [rad], the same
+  double time_step = 0.0;    ///< [s]
   /// How heat reaches the film; null = the effects' own closed forms.
   const FilmConduction* conduction = nullptr;
 
@@ -108,6 +109,7 @@ struct Inputs {
         slip_resistance(Sensitive::of(Variable::slip_resistance, state.slip_resistance)),
         area_fraction(pressure.mapped(context.area_fraction, context.area_slope)),
         slip_angle(context.slip_angle),
+        shear_angle(context.shear_angle),
         time_step(context.time_step),
         conduction(film_conduction) {}
 };

@@ -9,6 +9,8 @@
 
 #include <fmt/format.h>
 
+#include "macroscale/contact_points.h"
+
 namespace heddle::macroscale {
 
 namespace {
@@ -294,15 +296,16 @@ StampingCheckpoint read_checkpoint(const Hdf5Reader& file, const std::string& gr
   return checkpoint;
 }
 
-std::string fault_of(const StampingCheckpoint& c, const Blank& blank, int steps) {
+std::string fault_of(const StampingCheckpoint& c, const Blank& blank, ContactSites sites, int steps) {
   constexpr std::size_t tools = 3, loaded = 1;  // punch, die and binder; the binder is loaded
   const std::size_t nodes = static_cast<std::size_t>(blank.nodes());
+  const auto contacts = static_cast<std::size_t>(contact_count(blank, sites));
   const auto unknowns = static_cast<Eigen::Index>(3 * nodes + loaded);
   const bool fits = c.state.x.size() == unknowns && c.state.v.size() == unknowns &&
                     c.state.tool_z.size() == tools && c.state.corner_angle.size() == 4 * blank.quads.size() &&
                     c.state.memory.size() == tools &&
                     std::all_of(c.state.memory.begin(), c.state.memory.end(),
-                                [&](const auto& m) { return m.size() == nodes; });
+                                [&](const auto& m) { return m.size() == contacts; });
   if (!fits) return "its state is of another blank or other tools";
   if (c.step < 0 || c.step > steps || c.history.size() != static_cast<std::size_t>(c.step))
     return fmt::format("it stands at step {} with {} rows of history, and the run has {} steps", c.step,

@@ -36,6 +36,6 @@ void write_instant(Hdf5Writer& file, const std::string& group, const BlankState&
 BlankState read_instant(const Hdf5Reader& file, const std::string& group, const BlankState& shared);
 
 /// Fault that keeps a checkpoint from being of a stamping of this blank in so many steps, or "".
-std::string fault_of(const StampingCheckpoint& checkpoint, const Blank& blank, int steps);
+std::string fault_of(const StampingCheckpoint& checkpoint, const Blank& blank, ContactSites sites, int steps);
 
 }  // namespace heddle::macroscale

@@ -64,6 +64,19 @@ NormalContact normal_contact(const Curve& compaction, double distance, double ha
   return contact;
 }
 
+NormalContact normal_contact(const CurveFamily& compaction, double shear_angle, double distance,
+                             double half_thickness) {
+  NormalContact contact;
+  contact.approach = half_thickness - distance;
+  if (contact.approach <= 0.0) return contact;
+  const double angle = std::abs(shear_angle);
+  const Curve::Value p = compaction.evaluate(contact.approach, angle);
+  contact.energy = compaction.integral(contact.approach, angle);
+  contact.pressure = p.y;
+  contact.stiffness = p.slope;
+  return contact;
+}
+
 double approach_at(const Curve& compaction, double pressure) {
   double low = 0.0, high = compaction.x().back();
   while (high - low > 1e-15) {

@@ -17,6 +17,9 @@ struct NormalContact {
 };
 
 NormalContact normal_contact(const Curve& compaction, double distance, double half_thickness);
+/// The same of a fabric sheared by a trellis angle (sign ignored), held: no slope to it is given.
+NormalContact normal_contact(const CurveFamily& compaction, double shear_angle, double distance,
+                             double half_thickness);
 
 /// Approach of one face at which the compaction curve carries a pressure [m]: where a closing tool will come
 /// to rest.

@@ -20,6 +20,7 @@ friction::Context context_of(const Scene& scene, double pressure, double shear_a
   context.pressure = pressure;
   context.fabric_temperature = scene.blank_temperature;
   context.tool_temperature = scene.tool_temperature;
+  context.shear_angle = shear_angle;
   if (scene.contact_pressure == ContactPressure::real) {
     const auto floored = friction::floored(pressure);
     const auto area = scene.fabric->contact.evaluate(floored.value, shear_angle);
@@ -29,19 +30,12 @@ friction::Context context_of(const Scene& scene, double pressure, double shear_a
   return context;
 }
 
-// Slip direction against the warp, both in the tangent plane of the contact [rad]; 0 at rest.
-double slip_angle(const Scene& scene, const VectorXd& x, int node, const Vector3d& normal,
-                  const Vector3d& v) {
-  const Blank& blank = scene.blank;
-  const auto [i, j] = blank.grid[node];
-  const auto neighbour = [&](int line) {
-    const int n = line < 0 || line > blank.nu ? -1 : blank.node(line, j);
-    return n < 0 ? node : n;
-  };
-  const int before = neighbour(i - 1), after = neighbour(i + 1);
-  const Vector3d tow = x.segment<3>(3 * after) - x.segment<3>(3 * before);
-  const Vector3d warp = tow - normal.dot(tow) * normal, slip = v - normal.dot(v) * normal;
-  return std::atan2(normal.dot(warp.cross(slip)), warp.dot(slip));
+// Slip direction against the warp in the tangent plane of the contact, growing towards the weft whichever
+// face of the sheet the tool touches [rad]; 0 at rest.
+double slip_angle(const TowDirections& tows, const Vector3d& normal, const Vector3d& v) {
+  const Vector3d warp = tows.warp - normal.dot(tows.warp) * normal, slip = v - normal.dot(v) * normal;
+  const double side = normal.dot(tows.warp.cross(tows.weft)) < 0.0 ? -1.0 : 1.0;
+  return std::atan2(side * normal.dot(warp.cross(slip)), warp.dot(slip));
 }
 
 }  // namespace
@@ -49,24 +43,43 @@ double slip_angle(const Scene& scene, const VectorXd& x, int node, const Vector3
 FrictionPoints freeze(const System& system, const StepData& step, const VectorXd& x,
                       const std::vector<double>& shear_angle) {
   const Scene& scene = system.scene();
-  const int nodes = scene.blank.nodes();
-  FrictionPoints points(scene.tools.size(), std::vector<FrictionPoint>(nodes));
+  const int count = system.contacts();
+  FrictionPoints points(scene.tools.size(), std::vector<FrictionPoint>(count));
   if (step.frictionless || !scene.friction) return points;
   for (int k = 0; k < static_cast<int>(scene.tools.size()); ++k)
-    tbb::parallel_for(0, nodes, [&, k](int i) {
+    tbb::parallel_for(0, count, [&, k](int i) {
       const auto [d, contact] = system.tool_contact(step, x, k, i);
       FrictionPoint& point = points[k][i];
       point.memory = step.start->memory[k][i];
       if (contact.pressure <= 0.0) return;
-      point.load = contact.pressure * scene.blank.node_area[i];
+      point.load = contact.pressure * system.contact_area(step, i);
       // A distance interpolated from samples has a gradient of length about 1: slip needs a true projection.
       point.normal = d.normal.normalized();
       point.context = context_of(scene, contact.pressure, shear_angle[i]);
       point.context.time_step = step.dt;
-      point.context.slip_angle =
-          slip_angle(scene, x, i, point.normal, system.relative_velocity(step, x, k, i));
+      point.context.slip_angle = slip_angle(tow_directions(scene.blank, scene.contact_sites, x, i),
+                                            point.normal, system.relative_velocity(step, x, k, i));
     });
   return points;
+}
+
+std::vector<double> nodal_pressure(const System& system, const StepData& step, int k) {
+  const Scene& scene = system.scene();
+  std::vector<double> pressure(scene.blank.nodes(), 0.0), area(scene.blank.nodes(), 0.0);
+  for (int i = 0; i < system.contacts(); ++i) {
+    if (scene.contact_sites == ContactSites::nodes) {
+      pressure[i] = step.friction[k][i].context.pressure;
+      continue;
+    }
+    const ContactPoint& point = system.contact_points()[i];
+    for (std::size_t a = 0; a < 4; ++a) {
+      pressure[point.node[a]] += point.weight[a] * step.friction[k][i].load;
+      area[point.node[a]] += point.weight[a] * system.contact_area(step, i);
+    }
+  }
+  for (std::size_t n = 0; n < area.size(); ++n)
+    if (area[n] > 0.0) pressure[n] /= area[n];
+  return pressure;
 }
 
 LagChange lag_change(const System& system, const StepData& step, const VectorXd& x,
@@ -91,8 +104,8 @@ LagChange lag_change(const System& system, const StepData& step, const VectorXd&
   return total;
 }
 
-FrictionPoints blend(const System& system, const FrictionPoints& before, const FrictionPoints& after,
-                     double share, const std::vector<double>& shear_angle) {
+FrictionPoints blend(const System& system, const StepData& step, const FrictionPoints& before,
+                     const FrictionPoints& after, double share, const std::vector<double>& shear_angle) {
   const Scene& scene = system.scene();
   FrictionPoints points = after;
   for (std::size_t k = 0; k < points.size(); ++k)
@@ -105,7 +118,8 @@ FrictionPoints blend(const System& system, const FrictionPoints& before, const F
       point.load = kept + added;
       point.normal = (kept * old.normal + added * now.normal).normalized();
       const friction::Context last = point.context;
-      point.context = context_of(scene, point.load / scene.blank.node_area[i], shear_angle[i]);
+      point.context =
+          context_of(scene, point.load / system.contact_area(step, static_cast<int>(i)), shear_angle[i]);
       point.context.time_step = last.time_step;
       point.context.slip_angle = last.slip_angle;
     }

@@ -116,24 +116,38 @@ StepAccount account(const System& system, const StepData& step, const State& end
   const FrictionSettings settings = system.friction_settings();
   Vector3d on_blank = Vector3d::Zero();
   Increment compaction;
+  // Compaction holds the trellis angle of the start; what is stored in the end is of the angle reached. The
+  // difference is work that shear does or takes and that no force of the step knows: it stands with the
+  // numerical dissipation.
+  StepData reached;
+  if (!step.contact_shear.empty())
+    reached.contact_shear = contact_shear_angle(blank, scene.contact_sites, end.corner_angle);
+  const auto added_by_shear = [&](const Vector3d& x, int k, int i, double held) {
+    if (reached.contact_shear.empty()) return 0.0;
+    return system.contact_area(reached, i) *
+               system.contact_at(reached, x, k, i, end.tool_z[k]).normal.energy -
+           held;
+  };
   const bool rubs = scene.friction && !step.frictionless;
   for (int k = 0; k < static_cast<int>(scene.tools.size()); ++k) {
     Vector3d on_tool = Vector3d::Zero();
     double rubbed = 0.0;
     const double tool_motion = end.tool_z[k] - start.tool_z[k];
-    for (int i = 0; i < blank.nodes(); ++i) {
-      const double area = blank.node_area[i];
-      const Vector3d step_of_node = end.node(i) - start.node(i) - Vector3d(0, 0, tool_motion);
-      const NormalContact c0 = system.contact_at(start.node(i), k, start.tool_z[k]).normal;
-      const auto [d, c] = system.contact_at(end.node(i), k, end.tool_z[k]);
+    for (int i = 0; i < system.contacts(); ++i) {
+      const double area = system.contact_area(step, i);
+      const ContactPoint& at = system.contact_points()[i];
+      const Vector3d x0 = at_point(at, start.x), x1 = at_point(at, end.x);
+      const Vector3d step_of_point = x1 - x0 - Vector3d(0, 0, tool_motion);
+      const NormalContact c0 = system.contact_at(step, x0, k, i, start.tool_z[k]).normal;
+      const auto [d, c] = system.contact_at(step, x1, k, i, end.tool_z[k]);
       Vector3d gradient = -area * c.pressure * d.normal;
-      compaction.stored += area * (c.energy - c0.energy);
-      compaction.work += gradient.dot(step_of_node);
+      compaction.stored += area * (c.energy - c0.energy) + added_by_shear(x1, k, i, area * c.energy);
+      compaction.work += gradient.dot(step_of_point);
       if (rubs && step.friction[k][i].load > 0.0) {
         const FrictionPoint& point = step.friction[k][i];
-        const Vector3d v = step_of_node / step.dt;
+        const Vector3d v = step_of_point / step.dt;
         const Vector3d drag = friction_force(settings, point, v);
-        const double work = drag.dot(step_of_node);
+        const double work = drag.dot(step_of_point);
         rubbed += work;
         const double hersey = law_at(settings, point, slip_velocity(point, v).norm()).hersey;
         friction::Context context = point.context;

@@ -38,13 +38,13 @@ void demand_finite(const System& system, const VectorXd& values, const char* qua
 std::string node_beyond_tools(const System& system, const Position& position) {
   const Scene& scene = system.scene();
   for (int k = 0; k < static_cast<int>(scene.tools.size()); ++k)
-    for (int i = 0; i < scene.blank.nodes(); ++i) {
+    for (int i = 0; i < system.contacts(); ++i) {
       if (std::isfinite(position.contacts[k][i].surface.distance)) continue;
-      const Vector3d at = 1e3 * position.x.segment<3>(3 * i);
+      const Vector3d at = 1e3 * at_point(system.contact_points()[i], position.x);
       return fmt::format(
-          "node {} at ({:.3g}, {:.3g}, {:.3g}) mm is deeper in the {} or further off it than its distances "
+          "{} at ({:.3g}, {:.3g}, {:.3g}) mm is deeper in the {} or further off it than its distances "
           "are known",
-          i, at.x(), at.y(), at.z(), name_of(scene.tools[k].role));
+          name_of_contact(system, i), at.x(), at.y(), at.z(), name_of(scene.tools[k].role));
     }
   return "";
 }

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "macroscale/friction_lag.h"
 #include "macroscale/ledger.h"
 #include "macroscale/scene.h"
 #include "macroscale/solve.h"
@@ -54,6 +55,7 @@ Scene pull_out_scene(const PullOutSpec& spec, const mesoscale::FabricProperties&
   scene.tool_temperature = spec.tool_temperature;
   scene.slip_smoothing = std::max(2e-4 * spec.speed, 1e-6);
   scene.contact_pressure = spec.contact_pressure;
+  scene.contact_sites = spec.contact_sites;
   scene.held.assign(3 * scene.blank.nodes(), 0);
   for (const int node : leading_edge(scene.blank, spec)) {
     scene.held[3 * node] = 1;      // pulled along x
@@ -113,13 +115,10 @@ PullOutResult run_pull_out(const PullOutSpec& spec, const mesoscale::FabricPrope
     result.force.push_back(books.forces.by_supports.x());
     if (k + 1 == spec.steps) {
       const double mean = spec.normal_force / (spec.size[0] * spec.size[1]);
-      for (int i = 0; i < scene.blank.nodes(); ++i) {
-        const double lower = step.friction[0][i].context.pressure,
-                     upper = step.friction[1][i].context.pressure;
-        result.lower_pressure.push_back(lower);
-        result.upper_pressure.push_back(upper);
+      result.lower_pressure = nodal_pressure(system, step, 0);
+      result.upper_pressure = nodal_pressure(system, step, 1);
+      for (const double lower : result.lower_pressure)
         result.pressure_spread = std::max(result.pressure_spread, std::abs(lower / mean - 1.0));
-      }
       for (const double angle : end.corner_angle)
         result.shear_angle_max = std::max(result.shear_angle_max, std::abs(angle));
     }

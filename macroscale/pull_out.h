@@ -27,6 +27,7 @@ struct PullOutSpec {
   double tool_temperature = 358.15;    ///< [K]
   double fabric_temperature = 453.15;  ///< [K]
   ContactPressure contact_pressure = ContactPressure::real;
+  ContactSites contact_sites = ContactSites::nodes;
   friction::ContactState memory{};  ///< of every contact when the pull begins
 };
 

@@ -108,7 +108,8 @@ double draw_in_symmetry_gap(const Blank& blank, const State& state) {
 }
 
 // The strongest contact of each node over the tools.
-void add_contact_fields(const System& system, const State& state, const StepData& step, BlankState& blank) {
+void add_contacts_at_nodes(const System& system, const State& state, const StepData& step,
+                           BlankState& blank) {
   const Scene& scene = system.scene();
   for (int i = 0; i < scene.blank.nodes(); ++i)
     for (int k = 0; k < static_cast<int>(scene.tools.size()); ++k) {
@@ -121,6 +122,50 @@ void add_contact_fields(const System& system, const State& state, const StepData
       blank.friction_coefficient[i] = law.mu;
       blank.hersey[i] = law.hersey;
     }
+}
+
+// The same of contact inside cells: a node's pressure is the force that reaches it over its area, and what
+// goes with it the mean over that force.
+void add_contacts_in_cells(const System& system, const State& state, const StepData& step,
+                           BlankState& blank) {
+  struct Sum {
+    double area = 0.0, load = 0.0, slip_speed = 0.0, mu = 0.0, hersey = 0.0;
+  };
+  for (int k = 0; k < static_cast<int>(system.scene().tools.size()); ++k) {
+    std::vector<Sum> sums(system.scene().blank.nodes());
+    for (int i = 0; i < system.contacts(); ++i) {
+      const ContactPoint& at = system.contact_points()[i];
+      const FrictionPoint& point = step.friction[k][i];
+      const double area = system.contact_area(step, i);
+      for (std::size_t a = 0; a < 4; ++a) sums[at.node[a]].area += at.weight[a] * area;
+      if (point.load == 0.0) continue;
+      const double speed = slip_velocity(point, system.relative_velocity(step, state.x, k, i)).norm();
+      const auto law = law_at(system.friction_settings(), point, speed);
+      for (std::size_t a = 0; a < 4; ++a) {
+        Sum& sum = sums[at.node[a]];
+        const double load = at.weight[a] * point.load;
+        sum.load += load;
+        sum.slip_speed += load * speed;
+        sum.mu += load * law.mu;
+        sum.hersey += load * law.hersey;
+      }
+    }
+    for (std::size_t n = 0; n < sums.size(); ++n) {
+      const Sum& sum = sums[n];
+      if (sum.load == 0.0 || sum.load / sum.area <= blank.pressure[n]) continue;
+      blank.pressure[n] = sum.load / sum.area;
+      blank.slip_speed[n] = sum.slip_speed / sum.load;
+      blank.friction_coefficient[n] = sum.mu / sum.load;
+      blank.hersey[n] = sum.hersey / sum.load;
+    }
+  }
+}
+
+void add_contact_fields(const System& system, const State& state, const StepData& step, BlankState& blank) {
+  if (system.scene().contact_sites == ContactSites::nodes)
+    add_contacts_at_nodes(system, state, step, blank);
+  else
+    add_contacts_in_cells(system, state, step, blank);
 }
 
 }  // namespace
@@ -186,7 +231,7 @@ bool on_falling_branch(const System& system, const StepData& step, const State& 
   const Scene& scene = system.scene();
   if (!scene.friction || step.frictionless) return false;
   for (int k = 0; k < static_cast<int>(scene.tools.size()); ++k)
-    for (int i = 0; i < scene.blank.nodes(); ++i) {
+    for (int i = 0; i < system.contacts(); ++i) {
       const FrictionPoint& point = step.friction[k][i];
       if (point.load == 0.0) continue;
       const double speed = slip_velocity(point, system.relative_velocity(step, end.x, k, i)).norm();
@@ -199,7 +244,7 @@ bool on_falling_branch(const System& system, const StepData& step, const State& 
 double largest_pressure(const System& system, const StepData& step, const State& end) {
   double largest = 0.0;
   for (int k = 0; k < static_cast<int>(system.scene().tools.size()); ++k)
-    for (int i = 0; i < system.scene().blank.nodes(); ++i)
+    for (int i = 0; i < system.contacts(); ++i)
       largest = std::max(largest, system.tool_contact(step, end.x, k, i).normal.pressure);
   return largest;
 }

@@ -1,5 +1,7 @@
 #include "macroscale/scene.h"
 
+#include "macroscale/contact_points.h"
+
 namespace heddle::macroscale {
 
 State initial_state(const Scene& scene) {
@@ -10,7 +12,8 @@ State initial_state(const Scene& scene) {
   for (int i = 0; i < nodes; ++i) state.x.segment<3>(3 * i) = scene.blank.reference[i];
   state.tool_z.assign(scene.tools.size(), 0.0);
   state.corner_angle.assign(4 * scene.blank.quads.size(), 0.0);
-  state.memory.assign(scene.tools.size(), std::vector<friction::ContactState>(nodes));
+  state.memory.assign(scene.tools.size(),
+                      std::vector<friction::ContactState>(contact_count(scene.blank, scene.contact_sites)));
   return state;
 }
 

@@ -31,6 +31,8 @@ struct Scene {
   double stabilisation = 0.0;         ///< artefact [N s/m^3]
   double shear_rate = 1.0;            ///< factor on the rate-dependent shear resistance; 0 is off
   ContactPressure contact_pressure = ContactPressure::real;
+  ContactSites contact_sites = ContactSites::nodes;
+  bool compaction_follows_shear = false;  ///< else the table of gamma = 0 on initial areas
 
   int loaded_tools() const {
     int n = 0;
@@ -47,7 +49,7 @@ struct State {
   Eigen::VectorXd v;                                        ///< velocities [m/s]
   std::vector<double> tool_z;                               ///< displacement of each tool along z [m]
   std::vector<double> corner_angle;                         ///< gamma of each corner, 4 a quad [rad]
-  std::vector<std::vector<friction::ContactState>> memory;  ///< per tool, per node
+  std::vector<std::vector<friction::ContactState>> memory;  ///< per tool, per contact point
 
   Eigen::Vector3d node(int i) const { return x.segment<3>(3 * i); }
 };

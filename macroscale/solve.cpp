@@ -30,14 +30,16 @@ ContactScale contact_scale(const System& system, const StepData& step, const Vec
   double sum = 0.0;
   int touching = 0;
   for (int k = 0; k < static_cast<int>(scene.tools.size()); ++k)
-    for (int i = 0; i < scene.blank.nodes(); ++i) {
+    for (int i = 0; i < system.contacts(); ++i) {
       const double p = system.tool_contact(step, x, k, i).normal.pressure;
       if (p <= 0.0) continue;
-      sum += p * scene.blank.node_area[i];
-      if (scene.tools[k].motion == Motion::driven) scale.driven += p * scene.blank.node_area[i];
+      sum += p * system.contact_area(step, i);
+      if (scene.tools[k].motion == Motion::driven) scale.driven += p * system.contact_area(step, i);
       ++touching;
     }
-  if (touching > 0) scale.mean = sum / touching;
+  // A node feels as many contact points as there are for one node.
+  if (touching > 0)
+    scale.mean = sum / touching * (static_cast<double>(system.contacts()) / scene.blank.nodes());
   return scale;
 }
 
@@ -78,7 +80,7 @@ void accept(const System& system, const StepData& step, const VectorXd& x, State
   if (step.frictionless || !scene.friction) return;
   const FrictionSettings settings = system.friction_settings();
   for (int k = 0; k < static_cast<int>(scene.tools.size()); ++k)
-    for (int i = 0; i < scene.blank.nodes(); ++i) {
+    for (int i = 0; i < system.contacts(); ++i) {
       const FrictionPoint& point = step.friction[k][i];
       friction::ContactState& memory = end.memory[k][i];
       if (point.load == 0.0) continue;
@@ -88,7 +90,8 @@ void accept(const System& system, const StepData& step, const VectorXd& x, State
       memory.slip += speed * step.dt;
       memory.dwell += step.dt;
       const Vector3d v = system.relative_velocity(step, x, k, i);
-      memory.work_per_area += friction_force(settings, point, v).dot(v) * step.dt / scene.blank.node_area[i];
+      memory.work_per_area +=
+          friction_force(settings, point, v).dot(v) * step.dt / system.contact_area(step, i);
     }
 }
 
@@ -116,11 +119,11 @@ Fault fault_of(const System& system, const StepData& step, const State& end) {
     }
   }
   for (int k = 0; k < static_cast<int>(scene.tools.size()); ++k)
-    for (int i = 0; i < scene.blank.nodes(); ++i) {
+    for (int i = 0; i < system.contacts(); ++i) {
       const double approach = system.tool_contact(step, end.x, k, i).normal.approach;
       if (approach > 0.5 * scene.fabric->thickness)
-        return {fmt::format("node {} is pressed {:.3f} mm into the {}, through the middle of the fabric", i,
-                            1e3 * approach, name_of(scene.tools[k].role)),
+        return {fmt::format("{} is pressed {:.3f} mm into the {}, through the middle of the fabric",
+                            name_of_contact(system, i), 1e3 * approach, name_of(scene.tools[k].role)),
                 FailureKind::pressed_through};
     }
   return {};
@@ -132,6 +135,11 @@ std::string name_of(const System& system, int unknown) {
   const int nodes = system.scene().blank.nodes();
   return unknown < 3 * nodes ? fmt::format("node {}", unknown / 3)
                              : fmt::format("loaded tool {}", unknown - 3 * nodes);
+}
+
+std::string name_of_contact(const System& system, int point) {
+  return system.scene().contact_sites == ContactSites::nodes ? fmt::format("node {}", point)
+                                                             : fmt::format("cell {}", point / 4);
 }
 
 State state_at_iterate(const System& system, const StepData& step) {
@@ -154,7 +162,10 @@ StepSummary advance(System& system, const State& state, double dt, const std::ve
   step.tool_z = tool_z;
 
   // Friction loads of the start: at the tools' old places, where the state is in equilibrium.
-  const std::vector<double> shear_angle = nodal_shear_angle(system.scene().blank, state.corner_angle);
+  const Scene& scene = system.scene();
+  const std::vector<double> shear_angle =
+      contact_shear_angle(scene.blank, scene.contact_sites, state.corner_angle);
+  if (scene.compaction_follows_shear) step.contact_shear = shear_angle;
   StepData old_place = step;
   old_place.tool_z = state.tool_z;
   step.friction = freeze(system, old_place, state.x, shear_angle);
@@ -198,7 +209,8 @@ StepSummary advance(System& system, const State& state, double dt, const std::ve
       if (summary.swings) break;
       share = std::max(0.5 * share, least_share);
     }
-    step.friction = share == 1.0 ? std::move(next) : blend(system, step.friction, next, share, shear_angle);
+    step.friction =
+        share == 1.0 ? std::move(next) : blend(system, step, step.friction, next, share, shear_angle);
   }
   if (summary.lag_residual > options.lag_limit && change.largest > tolerance && !summary.swings) {
     summary.reason = fmt::format("friction loads still move by {:.1f} % after {} updates",

@@ -59,5 +59,7 @@ State state_at_iterate(const System& system, const StepData& step);
 
 /// Name of an unknown: "node 12", or "loaded tool 0" for those behind the nodes.
 std::string name_of(const System& system, int unknown);
+/// Of a contact point: "node 12", or "cell 7" where contact is at Gauss points.
+std::string name_of_contact(const System& system, int point);
 
 }  // namespace heddle::macroscale

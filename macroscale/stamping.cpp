@@ -158,7 +158,7 @@ void refuse(const std::string& fault) {
 StampingResult result_of(const StampingSpec& spec, const mesoscale::FabricProperties& fabric,
                          const StampingCheckpoint& last) {
   const Blank blank = make_blank(outline_of(spec.blank), spec.blank.spacing, spec.blank.orientation);
-  refuse(fault_of(last, blank, spec.process.steps));
+  refuse(fault_of(last, blank, spec.contact_sites, spec.process.steps));
   StampingResult result;
   result.summary.completed = true;
   take_over(result, blank, fabric, last);
@@ -224,7 +224,7 @@ class Run {
   }
 
   Ending resume(const StampingCheckpoint& checkpoint) {
-    refuse(fault_of(checkpoint, scene_.blank, spec_.process.steps));
+    refuse(fault_of(checkpoint, scene_.blank, scene_.contact_sites, spec_.process.steps));
     now_ = checkpoint;
     whole_ = now_;
     return Ending::done;

@@ -84,6 +84,10 @@ struct ArtefactSpec {
 
 enum class ContactPressure { real, nominal };
 
+/// Where the fabric is asked for contact and friction: at its nodes, each with its tributary area, or at 2 x
+/// 2 Gauss points of each cell.
+enum class ContactSites { nodes, gauss };
+
 struct StampingSpec {
   BlankSpec blank;
   PunchSpec punch;
@@ -93,6 +97,9 @@ struct StampingSpec {
   ArtefactSpec artefact;
   double shear_rate = 1.0;  ///< factor on the rate-dependent shear resistance; 0 is off [-]
   ContactPressure contact_pressure = ContactPressure::real;
+  ContactSites contact_sites = ContactSites::nodes;
+  bool compaction_follows_shear =
+      false;  ///< p(d, gamma) on current areas; off: the flat fabric's, initial areas
 };
 
 /// One accepted step: a row of history.csv. Energies are cumulative since the punch touched [J].

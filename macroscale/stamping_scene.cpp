@@ -33,6 +33,8 @@ Scene stamping_scene(const StampingSpec& spec, const mesoscale::FabricProperties
   scene.stabilisation = spec.artefact.stabilisation;
   scene.shear_rate = spec.shear_rate;
   scene.contact_pressure = spec.contact_pressure;
+  scene.contact_sites = spec.contact_sites;
+  scene.compaction_follows_shear = spec.compaction_follows_shear;
   return scene;
 }
 

@@ -1,6 +1,7 @@
 #include "macroscale/system.h"
 
 #include <algorithm>
+#include <cmath>
 #include <functional>
 
 #include <tbb/blocked_range.h>
@@ -52,7 +53,10 @@ Vector3d twist_of(const VectorXd& x, const std::array<int, 4>& q) {
 
 }  // namespace
 
-System::System(const Scene& scene) : scene_(scene), size_(scene.unknowns()) {
+System::System(const Scene& scene)
+    : scene_(scene),
+      size_(scene.unknowns()),
+      points_(macroscale::contact_points(scene.blank, scene.contact_sites)) {
   compaction_ = scene.fabric->compaction.curves().front();
   mass_.assign(size_, 0.0);
   const double density = scene.fabric->areal_density * scene.mass_scaling;
@@ -90,13 +94,27 @@ ToolContact System::contact_at(const Vector3d& x, int k, double z) const {
   return contact;
 }
 
+ToolContact System::contact_at(const StepData& step, const Vector3d& x, int k, int i, double z) const {
+  if (step.contact_shear.empty()) return contact_at(x, k, z);
+  ToolContact contact;
+  contact.surface = distance(scene_.tools[k].shape, x - Vector3d(0, 0, z));
+  contact.normal = normal_contact(scene_.fabric->compaction, step.contact_shear[i], contact.surface.distance,
+                                  0.5 * scene_.fabric->thickness);
+  return contact;
+}
+
+double System::contact_area(const StepData& step, int i) const {
+  return step.contact_shear.empty() ? points_[i].area : points_[i].area * std::cos(step.contact_shear[i]);
+}
+
 ToolContact System::tool_contact(const StepData& step, const VectorXd& x, int k, int i) const {
-  return contact_at(node_of(x, i), k, tool_position(step, x, k));
+  return contact_at(step, at_point(points_[i], x), k, i, tool_position(step, x, k));
 }
 
 Vector3d System::relative_velocity(const StepData& step, const VectorXd& x, int k, int i) const {
   const double tool_motion = tool_position(step, x, k) - step.start->tool_z[k];
-  return (node_of(x, i) - step.start->node(i) - Vector3d(0, 0, tool_motion)) / step.dt;
+  return (at_point(points_[i], x) - at_point(points_[i], step.start->x) - Vector3d(0, 0, tool_motion)) /
+         step.dt;
 }
 
 CornerLaw System::corner_law(const StepData& step) const {
@@ -134,9 +152,9 @@ void System::evaluate(const StepData& step, const VectorXd& x, Position& at) con
   at.contacts.resize(tools);
   at.friction.resize(rubs ? tools : 0);
   for (int k = 0; k < tools; ++k) {
-    at.contacts[k].resize(blank.nodes());
-    if (rubs) at.friction[k].resize(blank.nodes());
-    for_each(blank.nodes(), [&, k](int i) {
+    at.contacts[k].resize(contacts());
+    if (rubs) at.friction[k].resize(contacts());
+    for_each(contacts(), [&, k](int i) {
       at.contacts[k][i] = tool_contact(step, x, k, i);
       if (rubs && step.friction[k][i].load > 0.0)
         at.friction[k][i] =
@@ -192,8 +210,8 @@ PotentialTerms System::potential(const StepData& step, const Position& at) const
 
   const int tools = static_cast<int>(scene_.tools.size());
   for (int k = 0; k < tools; ++k) {
-    e.compaction += ordered_sum(blank.nodes(),
-                                [&](int i) { return blank.node_area[i] * at.contacts[k][i].normal.energy; });
+    e.compaction += ordered_sum(
+        contacts(), [&](int i) { return contact_area(step, i) * at.contacts[k][i].normal.energy; });
     if (body_[k] >= 0) e.loads += scene_.tools[k].force * x[body_[k]];
   }
   for (std::size_t k = 0; k < scene_.load.size(); ++k)
@@ -211,12 +229,20 @@ double System::friction_difference(const StepData& step, const Position& from, c
   const FrictionSettings settings = friction_settings();
   double sum = 0.0;
   for (int k = 0; k < static_cast<int>(scene_.tools.size()); ++k)
-    sum += ordered_sum(scene_.blank.nodes(), [&](int i) {
+    sum += ordered_sum(contacts(), [&](int i) {
       const FrictionPoint& point = step.friction[k][i];
       if (point.load == 0.0) return 0.0;
       return friction_power_difference(settings, point, from.friction[k][i], to.friction[k][i]);
     });
   return step.dt * sum;
+}
+
+Vector3d System::contact_force(const StepData& step, const Position& at, int k, int i) const {
+  const auto& [d, contact] = at.contacts[k][i];
+  Vector3d force = -contact_area(step, i) * contact.pressure * d.normal;
+  if (!at.friction.empty() && step.friction[k][i].load > 0.0)
+    force += friction_force(step.friction[k][i], at.friction[k][i]);
+  return force;
 }
 
 VectorXd System::full_gradient(const StepData& step, const Position& at) const {
@@ -257,20 +283,19 @@ VectorXd System::full_gradient(const StepData& step, const Position& at) const {
     g.segment<3>(3 * q[3]) -= force;
   }
 
-  const bool rubs = !at.friction.empty();
-  std::vector<double> vertical(blank.nodes());
+  std::vector<Vector3d> force(points_.size());
   for (int k = 0; k < static_cast<int>(scene_.tools.size()); ++k) {
-    for_each(blank.nodes(), [&](int i) {
-      const auto& [d, contact] = at.contacts[k][i];
-      Vector3d force = -blank.node_area[i] * contact.pressure * d.normal;
-      if (rubs && step.friction[k][i].load > 0.0)
-        force += friction_force(step.friction[k][i], at.friction[k][i]);
-      g.segment<3>(3 * i) += force;
-      vertical[i] = force.z();
-    });
+    for_each(contacts(), [&, k](int i) { force[i] = contact_force(step, at, k, i); });
+    if (scene_.contact_sites == ContactSites::nodes) {
+      for_each(contacts(), [&](int i) { g.segment<3>(3 * i) += force[i]; });
+    } else {
+      for (std::size_t i = 0; i < points_.size(); ++i)
+        for (std::size_t a = 0; a < 4; ++a)
+          g.segment<3>(3 * points_[i].node[a]) += points_[i].weight[a] * force[i];
+    }
     if (body_[k] >= 0) {
       g[body_[k]] += scene_.tools[k].force;
-      for (double f : vertical) g[body_[k]] -= f;
+      for (const Vector3d& f : force) g[body_[k]] -= f.z();
     }
   }
   for (std::size_t k = 0; k < scene_.load.size(); ++k) g[static_cast<Eigen::Index>(k)] -= scene_.load[k];

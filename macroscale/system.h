@@ -8,6 +8,7 @@
 
 #include "core/sparse_solver.h"
 #include "macroscale/contact.h"
+#include "macroscale/contact_points.h"
 #include "macroscale/corner_element.h"
 #include "macroscale/scene.h"
 
@@ -20,12 +21,15 @@ struct StepData {
   Eigen::VectorXd target;      ///< x_n + dt v_n: where inertia alone would go [m]
   std::vector<double> tool_z;  ///< end positions of fixed and driven tools [m]
   bool frictionless = false;   ///< friction switched off for this step (closing the binder)
-  /// Per tool, per node: the lagged friction point (load 0 = no friction).
+  /// Trellis angle at each contact point at the start, which compaction holds over the step [rad]; empty:
+  /// that of the flat fabric.
+  std::vector<double> contact_shear;
+  /// Per tool, per contact point: the lagged friction point (load 0 = no friction).
   std::vector<std::vector<FrictionPoint>> friction;
   Eigen::VectorXd iterate;  ///< the last position tried; the end of the step once it has converged [m]
 };
 
-/// One node against one tool.
+/// One contact point against one tool.
 struct ToolContact {
   Distance surface;
   NormalContact normal;
@@ -35,7 +39,7 @@ struct ToolContact {
 struct Position {
   Eigen::VectorXd x;                                    ///< [m]
   std::vector<CornerPoint> corners;                     ///< 4 a quad
-  std::vector<std::vector<ToolContact>> contacts;       ///< per tool, per node
+  std::vector<std::vector<ToolContact>> contacts;       ///< per tool, per contact point
   std::vector<std::vector<FrictionResponse>> friction;  ///< the same; empty without friction
 };
 
@@ -92,17 +96,25 @@ class System {
 
   /// Position of tool k at the end of the step: its own unknown if it is loaded.
   double tool_position(const StepData& step, const Eigen::VectorXd& x, int k) const;
-  /// Where node i at x stands against tool k, and how hard they press.
+  /// Nodes or Gauss points: what touches and rubs.
+  const std::vector<ContactPoint>& contact_points() const { return points_; }
+  int contacts() const { return static_cast<int>(points_.size()); }
+  /// Area on which the pressure of contact point i acts in this step [m^2]: of the flat blank, or, where
+  /// compaction follows shear, of the sheared one.
+  double contact_area(const StepData& step, int i) const;
+  /// Where contact point i at x stands against tool k, and how hard they press.
   ToolContact tool_contact(const StepData& step, const Eigen::VectorXd& x, int k, int i) const;
-  /// Velocity of node i against tool k over the step [m/s].
+  /// Velocity of contact point i against tool k over the step [m/s].
   Eigen::Vector3d relative_velocity(const StepData& step, const Eigen::VectorXd& x, int k, int i) const;
   /// Corner law of this step in a whole cell (time step and rate term included); `trimmed` gives a cut
   /// cell's.
   CornerLaw corner_law(const StepData& step) const;
 
   const Curve& compaction() const { return compaction_; }
-  /// The same for a node at x against tool k displaced by z.
+  /// The same for a point at x of the fabric, not sheared, against tool k displaced by z.
   ToolContact contact_at(const Eigen::Vector3d& x, int k, double z) const;
+  /// The same for contact point i, at x, whose fabric is as it is held in the step.
+  ToolContact contact_at(const StepData& step, const Eigen::Vector3d& x, int k, int i, double z) const;
   double mass(int unknown) const { return mass_[unknown]; }
   FrictionSettings friction_settings() const { return {scene_.friction, scene_.slip_smoothing}; }
   /// Energies and forces of the constant (quadratic) terms.
@@ -114,11 +126,17 @@ class System {
   void assemble_constant();
   void add_corners(const StepData& step, const Position& at, Filter filter);
   void add_contact(const StepData& step, const Position& at, Filter filter);
+  void add_contact_in_cells(const StepData& step, const Position& at, Filter filter);
+  void close_body_row(const StepData& step, int k, int body);
+  Eigen::Vector3d contact_force(const StepData& step, const Position& at, int k, int i) const;
+  Eigen::Matrix3d contact_stiffness(const StepData& step, const Position& at, int k, int i,
+                                    Filter filter) const;
   void write_matrix(double shift);
   int block(int row_node, int column_node) const;
 
   const Scene& scene_;
   int size_ = 0;
+  std::vector<ContactPoint> points_;
   Curve compaction_;          ///< of one face at gamma = 0
   std::vector<double> mass_;  ///< per unknown [kg]
   std::vector<int> body_;     ///< per tool: its unknown, or -1
@@ -134,6 +152,8 @@ class System {
     std::array<bool, 6> flipped;  ///< stored transposed because the row must be the larger node
   };
   std::vector<CornerSlots> corner_slots_;  ///< 4 a quad
+  /// Per quad: blocks of its pairs of corners (1st with 1st; 2nd with 1st, 2nd; ...), for contact inside it.
+  std::vector<std::array<int, 10>> cell_slots_;
   std::array<std::vector<int>, 4>
       colours_;  ///< quads that share no node, assembled in parallel without locks
   std::unique_ptr<SparseSolver> solver_;

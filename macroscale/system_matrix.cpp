@@ -67,6 +67,13 @@ void System::build_pattern() {
       }
       corner_slots_.push_back(slots);
     }
+  if (scene_.contact_sites == ContactSites::gauss)
+    for (const auto& quad : blank.quads) {
+      auto slot = cell_slots_.emplace_back().begin();
+      for (std::size_t a = 0; a < 4; ++a)
+        for (std::size_t b = 0; b <= a; ++b)
+          *slot++ = block(std::max(quad[a], quad[b]), std::min(quad[a], quad[b]));
+    }
   for (int q = 0; q < static_cast<int>(blank.quads.size()); ++q) {
     const auto [i, j] = blank.grid[blank.quads[q][0]];
     colours_[2 * (i % 2) + j % 2].push_back(q);
@@ -139,33 +146,72 @@ void System::add_corners(const StepData& step, const Position& at, Filter filter
     });
 }
 
-void System::add_contact(const StepData& step, const Position& at, Filter filter) {
-  const Blank& blank = scene_.blank;
-  const bool rubs = !at.friction.empty();
+Matrix3d System::contact_stiffness(const StepData& step, const Position& at, int k, int i,
+                                   Filter filter) const {
+  const auto& [d, contact] = at.contacts[k][i];
+  const double area = contact_area(step, i);
+  Matrix3d stiffness = area * contact.stiffness * d.normal * d.normal.transpose();
+  // Pressing against a convex tool, the point would rather slide off: negative, so dropped when filtering.
+  if (filter == Filter::none) stiffness -= area * contact.pressure * d.curvature;
   const FrictionTangent tangent = filter == Filter::none       ? FrictionTangent::exact
                                   : filter == Filter::positive ? FrictionTangent::convex
                                                                : FrictionTangent::secant;
+  if (!at.friction.empty() && step.friction[k][i].load > 0.0)
+    stiffness +=
+        friction_tangent(friction_settings(), step.friction[k][i], at.friction[k][i], tangent) / step.dt;
+  return stiffness;
+}
+
+void System::add_contact(const StepData& step, const Position& at, Filter filter) {
+  if (scene_.contact_sites == ContactSites::gauss) return add_contact_in_cells(step, at, filter);
+  const Blank& blank = scene_.blank;
   for (int k = 0, body = 0; k < static_cast<int>(scene_.tools.size()); ++k) {
     const bool loaded = body_[k] >= 0;
     std::vector<double>* row = loaded ? &body_row_[body] : nullptr;
-    for_each(blank.nodes(), [&](int i) {
-      const auto& [d, contact] = at.contacts[k][i];
-      Matrix3d stiffness = blank.node_area[i] * contact.stiffness * d.normal * d.normal.transpose();
-      // Pressing against a convex tool, the node would rather slide off: negative, so dropped when filtering.
-      if (filter == Filter::none) stiffness -= blank.node_area[i] * contact.pressure * d.curvature;
-      if (rubs && step.friction[k][i].load > 0.0)
-        stiffness +=
-            friction_tangent(friction_settings(), step.friction[k][i], at.friction[k][i], tangent) / step.dt;
+    for_each(blank.nodes(), [&, k](int i) {
+      const Matrix3d stiffness = contact_stiffness(step, at, k, i, filter);
       Eigen::Map<Matrix3d>(&blocks_[9 * block_start_[i]]) += stiffness;
       if (loaded)
         for (int c = 0; c < 3; ++c) (*row)[3 * i + c] = -stiffness(2, c);
     });
-    if (loaded) {
-      double diagonal = scene_.tools[k].mass / (step.dt * step.dt);
-      for (int i = 0; i < blank.nodes(); ++i) diagonal -= (*row)[3 * i + 2];
-      body_diagonal_[body++] = diagonal;
-    }
+    if (loaded) close_body_row(step, k, body++);
   }
+}
+
+// A point inside a cell stiffens all pairs of its corners by the product of their weights: symmetric blocks,
+// so which node has the larger number does not matter. Cells of one colour share no node.
+void System::add_contact_in_cells(const StepData& step, const Position& at, Filter filter) {
+  for (int k = 0, body = 0; k < static_cast<int>(scene_.tools.size()); ++k) {
+    const bool loaded = body_[k] >= 0;
+    if (loaded) std::fill(body_row_[body].begin(), body_row_[body].end(), 0.0);
+    for (const auto& colour : colours_)
+      for_each(static_cast<int>(colour.size()), [&, k](int index) {
+        const int q = colour[index];
+        for (int i = 4 * q; i < 4 * q + 4; ++i) {
+          if (at.contacts[k][i].normal.approach <= 0.0 &&
+              (at.friction.empty() || step.friction[k][i].load == 0.0))
+            continue;
+          const ContactPoint& point = points_[i];
+          const Matrix3d stiffness = contact_stiffness(step, at, k, i, filter);
+          auto slot = cell_slots_[q].begin();
+          for (std::size_t a = 0; a < 4; ++a) {
+            for (std::size_t b = 0; b <= a; ++b)
+              Eigen::Map<Matrix3d>(&blocks_[9 * *slot++]) += point.weight[a] * point.weight[b] * stiffness;
+            if (loaded)
+              for (int c = 0; c < 3; ++c)
+                body_row_[body][3 * point.node[a] + c] -= point.weight[a] * stiffness(2, c);
+          }
+        }
+      });
+    if (loaded) close_body_row(step, k, body++);
+  }
+}
+
+// A loaded tool feels what all its contacts feel along z, and its own mass.
+void System::close_body_row(const StepData& step, int k, int body) {
+  double diagonal = scene_.tools[k].mass / (step.dt * step.dt);
+  for (int i = 0; i < scene_.blank.nodes(); ++i) diagonal -= body_row_[body][3 * i + 2];
+  body_diagonal_[body] = diagonal;
 }
 
 void System::assemble(const StepData& step, const Position& at, Filter filter, double shift) {

@@ -302,6 +302,8 @@ macroscale::StampingSpec stamping_of(const Settings& settings, const std::filesy
   take(settings, "effects.shear_rate.factor", stamping.shear_rate);
   if (settings.is("fabric.shear_rate", "off")) stamping.shear_rate = 0.0;
   stamping.contact_pressure = contact_pressure_of(settings);
+  if (settings.is("contact.points", "gauss")) stamping.contact_sites = macroscale::ContactSites::gauss;
+  stamping.compaction_follows_shear = settings.is("contact.compaction", "sheared");
   return stamping;
 }
 

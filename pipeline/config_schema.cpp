@@ -373,6 +373,18 @@ std::vector<Key> blank_keys() {
   };
 }
 
+std::vector<Key> contact_keys() {
+  const auto stamping = Stage::stamping;
+  return {
+      {.path = "contact.points", .type = KeyType::choice, .presence = defaulted, .default_text = "nodes",
+       .choices = {"nodes", "gauss"}, .stage = stamping,
+       .help = "Where contact and friction are asked for: at the nodes with their tributary area, or at 2 x 2 Gauss points of each cell."},
+      {.path = "contact.compaction", .type = KeyType::choice, .presence = defaulted, .default_text = "flat",
+       .choices = {"flat", "sheared"}, .stage = stamping,
+       .help = "flat: every place is pressed as the fabric that is not sheared; sheared: the pressure over thickness follows the trellis angle, on the area of the sheared fabric."},
+  };
+}
+
 // A tool by its file instead of by its shape: a key is then used by the shape or by the file, never by both.
 std::vector<Key> tool_file_keys(const std::string& tool) {
   const std::string block = "tools." + tool, with_file = block + ".file";
@@ -510,6 +522,7 @@ std::vector<Key> all_keys() {
   append(keys, rig_keys());
   append(keys, process_keys());
   append(keys, blank_keys());
+  append(keys, contact_keys());
   append(keys, tool_keys());
   append(keys, effect_keys());
   append(keys, artefact_keys());

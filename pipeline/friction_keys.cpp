@@ -161,6 +161,16 @@ std::vector<Key> friction_effect_keys() {
     const std::string block = fmt::format("effects.{}", About<E>::id);
     append(keys, keys_of<E>(block, block, Stage::friction, true));
   });
+  keys.push_back(
+      {.path = "effects.orientation.form",
+       .type = KeyType::choice,
+       .presence = Presence::defaulted,
+       .default_text = "tows",
+       .choices = {"tows", "trellis"},
+       .stage = Stage::friction,
+       .used_when = "effects.orientation",
+       .help = "tows: 1 + A sin^2(2 theta) whatever the shear; trellis: along the long diagonal of the "
+               "sheared weave, growing with sin^2 of the shear angle."});
   return keys;
 }
 
@@ -294,6 +304,9 @@ void take_effects(const Settings& settings, friction::Effects& effects) {
     if (std::is_same_v<E, friction::ToolTemperatureShift> || settings.blocks.count(block) == 0) return;
     effect.emplace();
     take_fields(settings, block, *effect);
+    if constexpr (std::is_same_v<E, friction::Orientation>) {
+      if (settings.is(block + ".form", "trellis")) effect->form = E::Form::trellis;
+    }
   });
 }
 

@@ -14,6 +14,7 @@ namespace {
 using friction::About;
 using friction::Effects;
 using friction::HerseyTable;
+using friction::Orientation;
 using friction::SlipResistance;
 using friction::ToolTemperatureShift;
 
@@ -25,6 +26,8 @@ template <>
 constexpr std::size_t size_beside_numbers<SlipResistance> = sizeof(double);  // evolution
 template <>
 constexpr std::size_t size_beside_numbers<ToolTemperatureShift> = sizeof(double);  // form
+template <>
+constexpr std::size_t size_beside_numbers<Orientation> = sizeof(double);  // form
 template <>
 constexpr std::size_t size_beside_numbers<HerseyTable> = sizeof(HerseyTable);  // pairs and their curve
 
@@ -40,7 +43,7 @@ void write_term(Hdf5Writer& file, const std::string& group, const Term& term) {
   for (const auto& field : About<Term>::fields) file.write(group + "/" + field.name, term.*(field.member));
   if constexpr (std::is_same_v<Term, SlipResistance>)
     file.write(group + "/evolution", static_cast<int>(term.evolution));
-  if constexpr (std::is_same_v<Term, ToolTemperatureShift>)
+  if constexpr (std::is_same_v<Term, ToolTemperatureShift> || std::is_same_v<Term, Orientation>)
     file.write(group + "/form", static_cast<int>(term.form));
   if constexpr (std::is_same_v<Term, HerseyTable>) {
     file.write(group + "/hersey", term.hersey);
@@ -54,8 +57,8 @@ Term read_term(const Hdf5Reader& file, const std::string& group) {
   for (const auto& field : About<Term>::fields) term.*(field.member) = file.number(group + "/" + field.name);
   if constexpr (std::is_same_v<Term, SlipResistance>)
     term.evolution = static_cast<SlipResistance::Evolution>(file.integer(group + "/evolution"));
-  if constexpr (std::is_same_v<Term, ToolTemperatureShift>)
-    term.form = static_cast<ToolTemperatureShift::Form>(file.integer(group + "/form"));
+  if constexpr (std::is_same_v<Term, ToolTemperatureShift> || std::is_same_v<Term, Orientation>)
+    term.form = static_cast<typename Term::Form>(file.integer(group + "/form"));
   if constexpr (std::is_same_v<Term, HerseyTable>)
     term = friction::hersey_table(file.doubles(group + "/hersey"), file.doubles(group + "/coefficient"));
   return term;

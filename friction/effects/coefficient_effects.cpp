@@ -17,7 +17,20 @@ Sensitive factor_of(const StickSlip& effect, const Inputs& inputs) {
   return 1.0 + effect.amplitude * exp(inputs.slip_speed / -effect.speed);
 }
 
+namespace {
+
+// sin^2(gamma) cos 2(theta - theta_d) with 2 theta_d = sign(gamma) (90 deg - |gamma|) written out.
+double along_the_long_diagonal(double theta, double gamma) {
+  const double sine = std::sin(gamma), side = sine < 0.0 ? -1.0 : 1.0;
+  return sine * sine *
+         (std::cos(2.0 * theta) * std::abs(sine) + side * std::sin(2.0 * theta) * std::cos(gamma));
+}
+
+}  // namespace
+
 Sensitive factor_of(const Orientation& effect, const Inputs& inputs) {
+  if (effect.form == Orientation::Form::trellis)
+    return 1.0 + effect.amplitude * along_the_long_diagonal(inputs.slip_angle, inputs.shear_angle);
   const double sine = std::sin(2.0 * inputs.slip_angle);
   return 1.0 + effect.amplitude * sine * sine;
 }

@@ -27,9 +27,15 @@ struct StickSlip {
   double speed = 5e-3;     ///< Uw [m/s], > 0
 };
 
-/// Effect F7: mu *= 1 + A sin^2(2 theta), theta the slip direction against the warp.
+/// Effect F7: friction that depends on the slip direction theta against the warp.
+///     tows:     mu *= 1 + A sin^2(2 theta)
+///     trellis:  mu *= 1 + A sin^2(gamma) cos 2(theta - theta_d),  theta_d = +-(90 deg - |gamma|)/2
+/// theta_d is the long diagonal of the trellis, on the side of gamma's sign: none without shear, the same
+/// after warp and weft are exchanged, and mirrored with the fabric.
 struct Orientation {
-  double amplitude = 0.0;  ///< A [-], > -1; 0 = off
+  enum class Form { tows, trellis };
+  double amplitude = 0.0;  ///< A [-], > -1, and < 1 in the form trellis; 0 = off
+  Form form = Form::tows;
 };
 
 /// Effect F8: tau += c phi, so mu += c phi/p_f.
@@ -125,13 +131,16 @@ struct About<StickSlip> {
 template <>
 struct About<Orientation> {
   static constexpr const char* id = "orientation";
-  static constexpr const char* equation = "mu *= 1 + A sin^2(2 theta)";
-  static constexpr const char* source = "the paper saw relatively none; test range 0 to 0.15";
-  static constexpr std::array fields{Field<Orientation>{"amplitude",
-                                                        "",
-                                                        &Orientation::amplitude,
-                                                        {-1.0, 10.0, true, false},
-                                                        "Excess at 45 deg to the tows; 0 is off."}};
+  static constexpr const char* equation =
+      "mu *= 1 + A sin^2(2 theta) | mu *= 1 + A sin^2(gamma) cos 2(theta - theta_d)";
+  static constexpr const char* source =
+      "the paper saw relatively none; test range 0 to 0.15; trellis: the film of the geometry (derived)";
+  static constexpr std::array fields{Field<Orientation>{
+      "amplitude",
+      "",
+      &Orientation::amplitude,
+      {-1.0, 10.0, true, false},
+      "Excess at 45 deg to the tows, or (trellis) along the long diagonal of a closed trellis; 0 is off."}};
 };
 template <>
 struct About<Adhesion> {

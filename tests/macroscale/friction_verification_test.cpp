@@ -4,6 +4,8 @@
 #include <cmath>
 #include <numbers>
 
+#include <fmt/format.h>
+
 #include "macroscale/ledger.h"
 #include "macroscale/pull_out.h"
 #include "macroscale/solve.h"
@@ -23,6 +25,7 @@ TEST_CASE("V5: the friction test through the finite elements gives 2 mu N with C
   heddle::friction::Model model;
   model.law = heddle::friction::Coulomb{0.3};
   PullOutSpec spec;
+  spec.contact_sites = GENERATE(ContactSites::nodes, ContactSites::gauss);
   spec.normal_force = load;
   const auto result = run_pull_out(spec, make_fabric({.contact_stiffness = 5e9}), model);
   REQUIRE(result.completed);
@@ -35,6 +38,7 @@ TEST_CASE("V5: with a rate law the finite elements meet the law at the pressure 
   heddle::friction::Model model;
   model.law = heddle::friction::HerseyPower{0.6, 0.14};
   PullOutSpec spec;
+  spec.contact_sites = GENERATE(ContactSites::nodes, ContactSites::gauss);
   spec.speed = GENERATE(1.66e-3, 41.67e-3);
   const auto result = run_pull_out(spec, make_fabric({}), model);
   REQUIRE(result.completed);
@@ -51,13 +55,14 @@ namespace {
 
 // A narrow strip laid over a cylinder through `wrap` radians, one end pulled back by a dead load, the other
 // drawn along its tangent. Returns tension at the drawn end over tension at the loaded one.
-double capstan_ratio(double mu, double wrap, int per_radius) {
+double capstan_ratio(double mu, double wrap, int per_radius, ContactSites sites) {
   const auto fabric = make_fabric({.bending = 1e-9, .contact_stiffness = 5e9});
   heddle::friction::Model friction;
   friction.law = heddle::friction::Coulomb{mu};
   const double radius = 0.05, thickness = fabric.thickness, mid = radius + 0.5 * thickness;
   const double tail = 0.03, length = 2.0 * tail + mid * wrap, tension = 20.0;
   Scene scene;
+  scene.contact_sites = sites;
   scene.blank = make_blank({length, 0.005}, radius / per_radius);
   scene.fabric = &fabric;
   scene.friction = &friction;
@@ -113,7 +118,8 @@ SolveOptions tight_lag() {
 
 // A strip held between plate and binder, drawn over the die's shoulder and straight down its wall: tension
 // [N]. The ring is so large (5 m) that its edge is a straight shoulder to a 5 mm strip.
-double draw_in_tension(double mu, double binder_force, bool shoulder) {
+double draw_in_tension(double mu, double binder_force, bool shoulder, double spacing = 2.5e-3,
+                       ContactSites sites = ContactSites::nodes) {
   const auto fabric = make_fabric({.bending = 1e-5, .contact_stiffness = 5e9});
   heddle::friction::Model friction;
   friction.law = heddle::friction::Coulomb{mu};
@@ -121,7 +127,8 @@ double draw_in_tension(double mu, double binder_force, bool shoulder) {
   const double arc = (fillet + half) * 0.5 * std::numbers::pi;
   const double length = shoulder ? flat + arc + drop : flat + 0.02;
   Scene scene;
-  scene.blank = make_blank({length, 0.005}, 2.5e-3);  // an eighth of the shoulder radius
+  scene.contact_sites = sites;
+  scene.blank = make_blank({length, 0.005}, spacing);
   scene.fabric = &fabric;
   scene.friction = &friction;
   scene.tools = {{Role::die, RingShape{-half, opening, fillet, true}, Motion::fixed, 0.0, 0.0},
@@ -178,10 +185,11 @@ double draw_in_tension(double mu, double binder_force, bool shoulder) {
 TEST_CASE("V6: tension over a cylinder grows by exp(mu theta)", "[macroscale][verification][friction]") {
   const double wrap = 0.5 * std::numbers::pi;
   const double exact = std::exp(0.3 * wrap);
-  const double coarse = capstan_ratio(0.3, wrap, 10), fine = capstan_ratio(0.3, wrap, 20);
+  const auto sites = GENERATE(ContactSites::nodes, ContactSites::gauss);
+  const double coarse = capstan_ratio(0.3, wrap, 10, sites), fine = capstan_ratio(0.3, wrap, 20, sites);
   CAPTURE(coarse, fine, exact);
   CHECK(fine == Approx(exact).epsilon(0.005));
-  CHECK(capstan_ratio(0.0, wrap, 20) == Approx(1.0).epsilon(0.002));
+  CHECK(capstan_ratio(0.0, wrap, 20, sites) == Approx(1.0).epsilon(0.002));
 }
 
 TEST_CASE("V15: a strip drawn from under the binder carries twice mu times the binder force",
@@ -197,8 +205,26 @@ TEST_CASE("V15: a strip drawn from under the binder carries twice mu times the b
 TEST_CASE("V15: over the die's shoulder that tension grows by exp(mu pi / 2)",
           "[macroscale][verification][friction]") {
   const double mu = 0.3;
-  const double t1 = draw_in_tension(mu, 50.0, true), t2 = draw_in_tension(mu, 200.0, true);
+  const auto sites = GENERATE(ContactSites::nodes, ContactSites::gauss);
+  // An eighth of the shoulder's radius.
+  const double t1 = draw_in_tension(mu, 50.0, true, 2.5e-3, sites),
+               t2 = draw_in_tension(mu, 200.0, true, 2.5e-3, sites);
   const double slope = (t2 - t1) / 150.0;
   CAPTURE(t1, t2);
   CHECK(slope == Approx(2.0 * mu * std::exp(mu * 0.5 * std::numbers::pi)).epsilon(0.005));
+}
+
+TEST_CASE("V15: the shipped shoulder of 20 mm at the spacings of the mesh study against exp(mu pi / 2)",
+          "[macroscale][verification][friction][slow]") {
+  const double mu = 0.3, exact = std::exp(mu * 0.5 * std::numbers::pi);
+  for (const auto sites : {ContactSites::nodes, ContactSites::gauss})
+    for (const double spacing : {6e-3, 4.444e-3, 3e-3, 2.5e-3}) {
+      const double t1 = draw_in_tension(mu, 50.0, true, spacing, sites),
+                   t2 = draw_in_tension(mu, 200.0, true, spacing, sites);
+      const double ratio = (t2 - t1) / 150.0 / (2.0 * mu);
+      fmt::print("{:<6} spacing {:>5.2f} mm, r/h {:>4.1f}: T2/T1 {:.4f}, exp(mu theta) {:.4f}, {:+.2f} %\n",
+                 sites == ContactSites::nodes ? "nodes" : "gauss", 1e3 * spacing, 0.02 / spacing, ratio,
+                 exact, 100.0 * (ratio / exact - 1.0));
+      CHECK(ratio == Approx(exact).epsilon(0.005));
+    }
 }

@@ -27,8 +27,9 @@ struct Bench {
 
 // A crumpled little blank between a punch, a die plate and a loaded binder, with every term of the potential
 // alive.
-std::unique_ptr<Bench> bench() {
+std::unique_ptr<Bench> bench(ContactSites sites = ContactSites::nodes) {
   auto b = std::make_unique<Bench>();
+  b->scene.contact_sites = sites;
   b->friction.law = heddle::friction::Coulomb{0.3};
   b->scene.blank = make_blank({0.04, 0.03}, 0.01);
   b->scene.fabric = &b->fabric;
@@ -43,13 +44,17 @@ std::unique_ptr<Bench> bench() {
   b->step.start = &b->state;
   b->step.target = b->state.x;
   b->step.tool_z = {-1e-4, 0.0, 0.0};
-  b->step.friction.assign(3, std::vector<FrictionPoint>(b->scene.blank.nodes()));
+  b->step.friction.assign(3, std::vector<FrictionPoint>(contact_count(b->scene.blank, sites)));
   for (auto& tool : b->step.friction)
     for (auto& point : tool) {
       point.load = 0.5;
       point.context.pressure = 1e4;
     }
   return b;
+}
+
+heddle::Curve stiffer_compaction() {
+  return make_fabric({.contact_stiffness = 2e9}).compaction.curves().front();
 }
 
 VectorXd shaken(const Bench& b, double size) {
@@ -75,8 +80,13 @@ VectorXd multiply(const heddle::SymmetricPattern& pattern, std::span<const doubl
 
 TEST_CASE("the residual is the slope of the incremental potential, the matrix the slope of the residual",
           "[macroscale][system][derivative]") {
-  const auto b = bench();
+  const auto b = bench(GENERATE(ContactSites::nodes, ContactSites::gauss));
   System system(b->scene);
+  if (GENERATE(false, true)) {  // compaction of the sheared fabric, another one at each point
+    b->fabric.compaction =
+        heddle::CurveFamily({0.0, 0.8}, {b->fabric.compaction.curves().front(), stiffer_compaction()});
+    for (int i = 0; i < system.contacts(); ++i) b->step.contact_shear.push_back(0.1 * (i % 9) - 0.4);
+  }
   const VectorXd x = shaken(*b, 2e-4), d = shaken(*b, 1.0) - b->state.x;
   const VectorXd g = system.gradient(b->step, x);
   const auto potential = [&](double t) {

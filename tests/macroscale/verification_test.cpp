@@ -67,8 +67,10 @@ TEST_CASE("V10: a sphere on a compliant layer carries 2 pi R times the integral 
           "[macroscale][verification]") {
   const auto fabric = make_fabric({});
   const double radius = 0.07, depth = 0.3e-3;
+  const auto sites = GENERATE(ContactSites::nodes, ContactSites::gauss);
   const auto force = [&](double spacing) {
     Scene scene;
+    scene.contact_sites = sites;
     scene.blank = make_blank({0.02, 0.02}, spacing);
     scene.fabric = &fabric;
     scene.tools = {{Role::punch, HemisphereShape{{0, 0, 0.75e-3}, radius}, Motion::driven, 0.0, 0.0}};
@@ -84,7 +86,7 @@ TEST_CASE("V10: a sphere on a compliant layer carries 2 pi R times the integral 
   // Thin layer: area element 2 pi R d(approach); the sphere's slope is below depth / R.
   const double exact = 2.0 * std::numbers::pi * radius * fabric.compaction.curves().front().integral(depth);
   CHECK(force(2.5e-4) == Approx(exact).epsilon(0.01));
-  CHECK(std::abs(force(1e-2) / exact - 1.0) > 0.1);  // one node alone cannot: the check can fail
+  CHECK(std::abs(force(1e-2) / exact - 1.0) > 0.1);  // a node or four points alone cannot: the check can fail
 }
 
 namespace {

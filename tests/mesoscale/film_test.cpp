@@ -184,6 +184,39 @@ TEST_CASE("table of friction against the direction of sliding, sheared by 0 to 3
   for (std::size_t k = 1; k < ranges.size(); ++k) CHECK(ranges[k] > ranges[k - 1]);
 }
 
+TEST_CASE("drag of a sheared weave turns with its long diagonal and grows with the square of its shear",
+          "[film][slow]") {
+  // mu / mean = 1 + A sin^2(gamma) cos 2(theta - theta_d), theta_d = (90 deg - gamma) / 2 the long diagonal.
+  // Over evenly spaced directions of half a turn the harmonics are plain sums.
+  const double pressure = GENERATE(8.6e3, 50e3, 100e3, 150e3);
+  constexpr int count = 12;
+  std::vector<double> angles;
+  for (int k = 0; k < count; ++k) angles.push_back(radians(180.0 * k / count));
+  for (const double shear : {10.0, 20.0, 30.0}) {
+    const auto states = friction_by_direction(bearing(shear, 64), pressure, speed, angles);
+    const double diagonal = radians(0.5 * (90.0 - shear)), sine = std::sin(radians(shear));
+    double mean = 0.0, even = 0.0, odd = 0.0, fourth = 0.0;
+    for (int k = 0; k < count; ++k) {
+      REQUIRE(states[k].converged);
+      const double mu = states[k].friction() / count, turn = 2.0 * (angles[k] - diagonal);
+      mean += mu;
+      even += 2.0 * mu * std::cos(turn);
+      odd += 2.0 * mu * std::sin(turn);
+      fourth += 2.0 * mu * std::cos(2.0 * turn);
+    }
+    fmt::print(
+        "{:>4.1f} kPa, sheared by {} deg: mean mu {:.4f}, A {:+.3f}; across {:+.4f} %, fourth harmonic "
+        "{:+.3f} %\n",
+        1e-3 * pressure, shear, mean, even / mean / (sine * sine), 100.0 * odd / mean, 100.0 * fourth / mean);
+    CHECK(std::abs(odd) < 1e-3 * mean);  // the mirror about the diagonal
+    // Where the film floats high above the crowns (a binder's pressure) it does not feel them at all.
+    if (pressure < 10e3)
+      CHECK(std::abs(even) < 5e-3 * mean);
+    else
+      CHECK(even > 0.0);
+  }
+}
+
 TEST_CASE("pressure exponent of the touched area: what geometry gives, and what Table 4 asks for",
           "[film][paper]") {
   const PlateContact plate = plate_contact(table1(), law, 0.0);

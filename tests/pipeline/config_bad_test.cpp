@@ -255,6 +255,7 @@ const std::vector<BadFile> bad_files{
     {"tool_without_triangles", {{"tools.punch.file.no_triangles", 0}}},
     {"tow_too_flat", {{"weave.tow_width.proportion", 3}}},
     {"tow_without_room_for_its_material", {{"weave.tow_thickness.holds_material", 3}}},
+    {"trellis_amplitude_too_large", {{"effects.orientation.trellis", 8}}},
     {"two_documents", {{"yaml.documents", 0}}},
     {"unit_in_the_weave_and_blank_beside_the_binder", {{"weave.tow_width.unit", 3}, {"blank.size.reach", 7}}},
     {"unit_on_a_number", {{"resin.power_index.unit", 4}}},

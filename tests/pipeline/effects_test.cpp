@@ -83,6 +83,19 @@ TEST_CASE("every friction effect is off at its off value to the byte, and linear
   CHECK(at == usual.size());
 }
 
+TEST_CASE("friction along the trellis is off at its off value to the byte, and linear when tiny",
+          "[pipeline][effect]") {
+  const auto with = [](const std::string& amplitude) {
+    return run("effects: {orientation: {amplitude: " + amplitude + ", form: trellis}}\n");
+  };
+  const Run without = run("");
+  CHECK((with("0").history == without.history));
+  const double once = with("1e-3").force - without.force, twice = with("2e-3").force - without.force;
+  CAPTURE(once, twice);
+  CHECK(once != 0.0);
+  CHECK(twice == Approx(2.0 * once).epsilon(0.01));
+}
+
 TEST_CASE(
     "the factor on the rate of shear is 1 and 0 to the byte at the ends of its switch and linear when tiny",
     "[pipeline][effect]") {

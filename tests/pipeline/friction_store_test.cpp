@@ -89,7 +89,10 @@ TEST_CASE("the choices of a term that are no numbers are kept", "[pipeline][cach
   model.law = friction::SlipResistance{.evolution = friction::SlipResistance::Evolution::inside};
   model.effects.tool_temperature_shift =
       friction::ToolTemperatureShift{.slope = -1e-3, .form = friction::ToolTemperatureShift::Form::factor};
+  model.effects.orientation =
+      friction::Orientation{.amplitude = 0.2, .form = friction::Orientation::Form::trellis};
   const friction::Model kept = again(model);
+  CHECK(kept.effects.orientation->form == friction::Orientation::Form::trellis);
   CHECK(std::get<friction::SlipResistance>(kept.law).evolution ==
         friction::SlipResistance::Evolution::inside);
   CHECK(kept.effects.tool_temperature_shift->form == friction::ToolTemperatureShift::Form::factor);
