@@ -135,7 +135,8 @@ void check_shapes(Findings& f, const PunchSpec& punch, const DieSpec& die, const
 
 Problems check(const StampingSpec& spec) {
   Findings f;
-  const auto& [blank, punch, die, binder, process, artefact, shear_rate, contact_pressure] = spec;
+  const auto& [blank, punch, die, binder, process, artefact, shear_rate, contact_pressure, heat] = spec;
+  if (heat) f.add(thermal::check(*heat));
   const double die_edge = die.opening_radius + die.fillet;
   double edge = 0.0;
   std::vector<std::string> edges{"tools.die.file", "tools.binder.file"};

@@ -11,6 +11,7 @@ State initial_state(const Scene& scene) {
   state.tool_z.assign(scene.tools.size(), 0.0);
   state.corner_angle.assign(4 * scene.blank.quads.size(), 0.0);
   state.memory.assign(scene.tools.size(), std::vector<friction::ContactState>(nodes));
+  state.heat = initial_heat(scene);
   return state;
 }
 

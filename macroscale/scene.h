@@ -1,6 +1,7 @@
 #pragma once
 
 #include <array>
+#include <optional>
 #include <vector>
 
 #include <Eigen/Core>
@@ -9,6 +10,7 @@
 #include "macroscale/blank.h"
 #include "macroscale/contact.h"
 #include "macroscale/stamping.h"
+#include "macroscale/thermal/blank_heat.h"
 #include "macroscale/tools.h"
 #include "mesoscale/fabric_properties.h"
 
@@ -31,6 +33,7 @@ struct Scene {
   double stabilisation = 0.0;         ///< artefact [N s/m^3]
   double shear_rate = 1.0;            ///< factor on the rate-dependent shear resistance; 0 is off
   ContactPressure contact_pressure = ContactPressure::real;
+  std::optional<HeatModel> heat;  ///< absent: one temperature a run
 
   int loaded_tools() const {
     int n = 0;
@@ -48,6 +51,7 @@ struct State {
   std::vector<double> tool_z;                               ///< displacement of each tool along z [m]
   std::vector<double> corner_angle;                         ///< gamma of each corner, 4 a quad [rad]
   std::vector<std::vector<friction::ContactState>> memory;  ///< per tool, per node
+  BlankHeat heat;                                           ///< empty: one temperature a run
 
   Eigen::Vector3d node(int i) const { return x.segment<3>(3 * i); }
 };

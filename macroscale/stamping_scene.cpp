@@ -33,6 +33,7 @@ Scene stamping_scene(const StampingSpec& spec, const mesoscale::FabricProperties
   scene.stabilisation = spec.artefact.stabilisation;
   scene.shear_rate = spec.shear_rate;
   scene.contact_pressure = spec.contact_pressure;
+  if (spec.thermal) scene.heat = heat_model(*spec.thermal, fabric.areal_density, scene.blank_temperature);
   return scene;
 }
 
