@@ -6,6 +6,7 @@
 #include "macroscale/outline_file.h"
 #include "pipeline/friction_keys.h"
 #include "pipeline/solid_keys.h"
+#include "pipeline/thermal_keys.h"
 
 namespace heddle::pipeline {
 namespace {
@@ -252,6 +253,7 @@ macroscale::ProcessSpec process_of(const Settings& settings) {
   take(settings, "process.punch.speed_scale", process.speed_scale);
   take(settings, "process.steps", process.steps);
   take(settings, "process.binder_force", process.binder_force);
+  take(settings, "process.hold", process.hold);
   take(settings, "process.tool_temperature", process.tool_temperature);
   take(settings, "process.blank_temperature", process.blank_temperature);
   return process;
@@ -302,6 +304,7 @@ macroscale::StampingSpec stamping_of(const Settings& settings, const std::filesy
   take(settings, "effects.shear_rate.factor", stamping.shear_rate);
   if (settings.is("fabric.shear_rate", "off")) stamping.shear_rate = 0.0;
   stamping.contact_pressure = contact_pressure_of(settings);
+  stamping.thermal = thermal_of(settings);
   return stamping;
 }
 
