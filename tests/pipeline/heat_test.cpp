@@ -118,6 +118,7 @@ TEST_CASE("the shipped case with temperatures runs small and says what has froze
                            "process.punch={stroke: 30 mm, time: 0.18 s}", "process.hold=2 s"};
     options.assignments.insert(options.assignments.end(), more.begin(), more.end());
     options.quiet = true;
+    options.print = false;
     REQUIRE(pipeline::run_case(options) == pipeline::exit_done);
     return contents(scratch / name);
   };
@@ -146,6 +147,7 @@ TEST_CASE("the shipped case with temperatures runs small and says what has froze
   again.cache = scratch / "c-cache";
   warm(again.cache);
   again.quiet = true;
+  again.print = false;
   REQUIRE(pipeline::run_case(again) == pipeline::exit_done);
   CHECK((pipeline::read_file(scratch / "c" / "macroscale/hold.csv") == a.at("macroscale/hold.csv")));
 }
