@@ -5,7 +5,7 @@
 cmake_minimum_required(VERSION 3.25)
 set(stage_files case.h case.cpp case_rules.h case_rules.cpp case_settings.h case_settings.cpp stages.h stages.cpp friction_keys.h friction_keys.cpp solid_keys.h
     solid_keys.cpp solid_stage.h solid_stage.cpp solid_store.h solid_store.cpp friction_store.h
-    friction_store.cpp friction_rig_stage.h friction_rig_stage.cpp stage_store.h stage_store.cpp stamping_record.h
+    friction_store.cpp friction_rig_stage.h friction_rig_stage.cpp stage_store.h stage_store.cpp stamping_record.h thermal_keys.h thermal_keys.cpp
     stamping_record.cpp)
 
 function(hash_of result)

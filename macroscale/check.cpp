@@ -136,7 +136,8 @@ void check_shapes(Findings& f, const PunchSpec& punch, const DieSpec& die, const
 Problems check(const StampingSpec& spec) {
   Findings f;
   const auto& [blank, punch, die, binder, process, artefact, shear_rate, contact_pressure, contact_sites,
-               compaction_follows_shear] = spec;
+               compaction_follows_shear, heat] = spec;
+  if (heat) f.add(thermal::check(*heat));
   const double die_edge = die.opening_radius + die.fillet;
   double edge = 0.0;
   std::vector<std::string> edges{"tools.die.file", "tools.binder.file"};

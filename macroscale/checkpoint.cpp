@@ -16,7 +16,8 @@ namespace heddle::macroscale {
 namespace {
 
 // One name a member. A member added to HistoryRow must be added here too: the size tells.
-static_assert(sizeof(HistoryRow) == 26 * sizeof(double), "HistoryRow has changed: name its new members here");
+static_assert(sizeof(HistoryRow) == 26 * sizeof(double) + sizeof(std::optional<HeatRow>),
+              "HistoryRow has changed: name its new members here");
 template <class Row, class Visit>
 void each_number(Row& r, const Visit& visit) {
   visit("time", r.time);
@@ -48,6 +49,34 @@ void each_number(Row& r, const Visit& visit) {
   visit("friction_work_outside", r.friction_work_outside);
 }
 
+static_assert(sizeof(HeatRow) == 10 * sizeof(double), "HeatRow has changed: keep its new members");
+template <class Row>
+auto heat_members(Row& r) {
+  return std::tie(r.time, r.mean_temperature, r.coldest_face, r.through_bottom, r.through_top, r.of_friction,
+                  r.crystallised, r.frozen_faces, r.frozen_through, r.residual);
+}
+
+// Nothing is written of a run with one temperature.
+void write_heat_rows(Hdf5Writer& file, const std::string& path, const std::vector<HeatRow>& rows) {
+  if (rows.empty()) return;
+  std::vector<double> flat;
+  for (const HeatRow& row : rows)
+    std::apply([&](const auto&... member) { (flat.push_back(member), ...); }, heat_members(row));
+  file.write(path, flat, {rows.size(), 10});
+}
+
+std::vector<HeatRow> read_heat_rows(const Hdf5Reader& file, const std::string& path) {
+  if (!file.has(path)) return {};
+  const std::vector<double> flat = file.doubles(path);
+  if (flat.size() % 10 != 0) throw Hdf5Error(path + " has the wrong length");
+  std::vector<HeatRow> rows(flat.size() / 10);
+  for (std::size_t k = 0; k < rows.size(); ++k) {
+    std::size_t c = 10 * k;
+    std::apply([&](auto&... member) { ((member = flat[c++]), ...); }, heat_members(rows[k]));
+  }
+  return rows;
+}
+
 void write_history(Hdf5Writer& file, const std::string& group, const std::vector<HistoryRow>& rows) {
   // The first row's members name the columns; each column is gathered over all rows.
   std::vector<std::string> names;
@@ -60,6 +89,10 @@ void write_history(Hdf5Writer& file, const std::string& group, const std::vector
     each_number(row, [&](const char*, auto value) { columns[c++].push_back(static_cast<double>(value)); });
   }
   for (std::size_t c = 0; c < names.size(); ++c) file.write(group + "/" + names[c], columns[c]);
+  std::vector<HeatRow> heat;
+  for (const HistoryRow& row : rows)
+    if (row.heat) heat.push_back(*row.heat);
+  write_heat_rows(file, group + "/heat", heat);
 }
 
 std::vector<HistoryRow> read_history(const Hdf5Reader& file, const std::string& group) {
@@ -77,6 +110,9 @@ std::vector<HistoryRow> read_history(const Hdf5Reader& file, const std::string& 
     }
     ++column;
   });
+  const std::vector<HeatRow> heat = read_heat_rows(file, group + "/heat");
+  if (!heat.empty() && heat.size() != rows.size()) throw Hdf5Error(group + "/heat has the wrong length");
+  for (std::size_t r = 0; r < heat.size(); ++r) rows[r].heat = heat[r];
   return rows;
 }
 
@@ -119,6 +155,34 @@ std::vector<double> flat_memory(const State& state) {
   return flat;
 }
 
+void write_heat(Hdf5Writer& file, const std::string& group, const BlankHeat& heat) {
+  if (heat.empty()) return;
+  file.write(group + "/cells", static_cast<int>(heat.field.cells));
+  file.write(group + "/temperature", heat.field.temperature);
+  file.write(group + "/progress", heat.field.progress);
+  write_rows(file, group + "/face", heat.field.face);
+  write_rows(file, group + "/heat_in", heat.field.heat_in);
+  write_rows(file, group + "/film", heat.film);
+  file.write(group + "/rate_factor", heat.rate_factor);
+}
+
+BlankHeat read_heat(const Hdf5Reader& file, const std::string& group) {
+  BlankHeat heat;
+  if (!file.has(group + "/cells")) return heat;
+  heat.field.cells = static_cast<std::size_t>(file.integer(group + "/cells"));
+  heat.field.temperature = file.doubles(group + "/temperature");
+  heat.field.progress = file.doubles(group + "/progress");
+  heat.field.face = read_rows<2>(file, group + "/face");
+  heat.field.heat_in = read_rows<3>(file, group + "/heat_in");
+  heat.film = read_rows<2>(file, group + "/film");
+  heat.rate_factor = file.doubles(group + "/rate_factor");
+  const std::size_t nodes = heat.field.nodes(), all = nodes * heat.field.cells;
+  if (heat.field.temperature.size() != all || heat.field.progress.size() != all ||
+      heat.field.heat_in.size() != nodes || heat.film.size() != nodes)
+    throw Hdf5Error(group + " has parts that do not fit");
+  return heat;
+}
+
 void write_state(Hdf5Writer& file, const std::string& group, const State& state) {
   file.write(group + "/time", state.time);
   file.write(group + "/x", std::span(state.x.data(), static_cast<std::size_t>(state.x.size())));
@@ -127,6 +191,7 @@ void write_state(Hdf5Writer& file, const std::string& group, const State& state)
   file.write(group + "/corner_angle", state.corner_angle);
   const std::size_t tools = state.memory.size(), nodes = tools > 0 ? state.memory[0].size() : 0;
   file.write(group + "/contact_memory", flat_memory(state), {tools, nodes, memory_size});
+  write_heat(file, group + "/heat", state.heat);
 }
 
 State read_state(const Hdf5Reader& file, const std::string& group) {
@@ -151,6 +216,7 @@ State read_state(const Hdf5Reader& file, const std::string& group) {
                  memory_members(of_tool.emplace_back()));
     }
   }
+  state.heat = read_heat(file, group + "/heat");
   return state;
 }
 
@@ -213,6 +279,13 @@ void each_field(Blank& blank, const Visit& visit) {
   visit("friction_coefficient", blank.friction_coefficient);
   visit("hersey", blank.hersey);
 }
+template <class Blank, class Visit>
+void each_heat_field(Blank& blank, const Visit& visit) {
+  visit("temperature_bottom", blank.heat.bottom);
+  visit("temperature_top", blank.heat.top);
+  visit("temperature_mean", blank.heat.mean);
+  visit("crystallised", blank.heat.crystallised);
+}
 
 }  // namespace
 
@@ -225,6 +298,9 @@ void write_instant(Hdf5Writer& file, const std::string& group, const BlankState&
   write_rows(file, group + "/tow_strain", blank.tow_strain);
   each_field(blank, [&](const char* name, const std::vector<double>& field) {
     file.write(group + "/" + name, field);
+  });
+  each_heat_field(blank, [&](const char* name, const std::vector<double>& field) {
+    if (!field.empty()) file.write(group + "/" + name, field);
   });
   std::vector<std::array<double, 6>> edge;
   for (const EdgeState& e : blank.edge)
@@ -254,6 +330,11 @@ BlankState read_instant(const Hdf5Reader& file, const std::string& group, const 
     field = file.doubles(group + "/" + name);
     whole &= field.size() == nodes;
   });
+  each_heat_field(blank, [&](const char* name, std::vector<double>& field) {
+    if (!file.has(group + "/" + name)) return;
+    field = file.doubles(group + "/" + name);
+    whole &= field.size() == nodes;
+  });
   if (!whole) throw Hdf5Error(group + " does not fit its blank");
   for (const auto& e : read_rows<6>(file, group + "/edge"))
     blank.edge.push_back({{e[0], e[1]}, {e[2], e[3], e[4]}, e[5]});
@@ -265,6 +346,7 @@ void write(Hdf5Writer& file, const std::string& group, const StampingCheckpoint&
   write_state(file, group + "/state", checkpoint.state);
   write_history(file, group + "/row", {checkpoint.row});
   write_history(file, group + "/history", checkpoint.history);
+  write_heat_rows(file, group + "/hold", checkpoint.hold);
   file.write(group + "/peak_force_balance", checkpoint.peak_force_balance);
   file.write(group + "/peak_pressure", checkpoint.peak_pressure);
   file.write(group + "/peak_swing", checkpoint.peak_swing);
@@ -284,6 +366,7 @@ StampingCheckpoint read_checkpoint(const Hdf5Reader& file, const std::string& gr
   if (row.size() != 1) throw Hdf5Error(group + "/row is no single row");
   checkpoint.row = row[0];
   checkpoint.history = read_history(file, group + "/history");
+  checkpoint.hold = read_heat_rows(file, group + "/hold");
   checkpoint.peak_force_balance = file.number(group + "/peak_force_balance");
   checkpoint.peak_pressure = file.number(group + "/peak_pressure");
   checkpoint.peak_swing = file.number(group + "/peak_swing");
@@ -310,6 +393,9 @@ std::string fault_of(const StampingCheckpoint& c, const Blank& blank, ContactSit
   if (c.step < 0 || c.step > steps || c.history.size() != static_cast<std::size_t>(c.step))
     return fmt::format("it stands at step {} with {} rows of history, and the run has {} steps", c.step,
                        c.history.size(), steps);
+  if (!c.state.heat.empty() &&
+      (c.state.heat.field.nodes() != nodes || c.state.heat.rate_factor.size() != blank.quads.size()))
+    return "its temperatures are of another blank";
   if (c.blank.position.size() != nodes) return "its picture is of another blank";
   return "";
 }

@@ -22,6 +22,7 @@ struct StampingCheckpoint {
   bool falling_branch = false;
   int rejected_steps = 0, newton_iterations = 0, factorisations = 0;
   std::vector<HistoryRow> history;  ///< one row a step done
+  std::vector<HeatRow> hold;        ///< after the last step, where there is a hold
   BlankState blank;                 ///< after it, for files and pictures
 };
 

@@ -56,6 +56,9 @@ FrictionPoints freeze(const System& system, const StepData& step, const VectorXd
       // A distance interpolated from samples has a gradient of length about 1: slip needs a true projection.
       point.normal = d.normal.normalized();
       point.context = context_of(scene, contact.pressure, shear_angle[i]);
+      point.context.fabric_temperature =
+          fabric_temperature(scene, step.start->heat, k, system.contact_points()[i]);
+      point.context.tool_temperature = tool_temperature(scene, k);
       point.context.time_step = step.dt;
       point.context.slip_angle = slip_angle(tow_directions(scene.blank, scene.contact_sites, x, i),
                                             point.normal, system.relative_velocity(step, x, k, i));
@@ -120,6 +123,8 @@ FrictionPoints blend(const System& system, const StepData& step, const FrictionP
       const friction::Context last = point.context;
       point.context =
           context_of(scene, point.load / system.contact_area(step, static_cast<int>(i)), shear_angle[i]);
+      point.context.fabric_temperature = last.fabric_temperature;
+      point.context.tool_temperature = last.tool_temperature;
       point.context.time_step = last.time_step;
       point.context.slip_angle = last.slip_angle;
     }

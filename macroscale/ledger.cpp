@@ -26,7 +26,8 @@ CornerIncrements corner_increments(const System& system, const StepData& step, c
   CornerIncrements sum;
   for (std::size_t q = 0; q < blank.quads.size(); ++q) {
     const auto corners = corners_of(blank.quads[q]);
-    const CornerLaw here = trimmed(law, blank.share[q]);
+    CornerLaw here = trimmed(law, blank.share[q]);
+    here.rate_consistency *= system.rate_factor(step, q);
     for (std::size_t k = 0; k < 4; ++k) {
       const Corner& c = corners[k];
       const double before = start.corner_angle[4 * q + k];

@@ -9,11 +9,6 @@
 
 namespace heddle::macroscale {
 
-namespace {
-
-using Eigen::Vector3d;
-
-// Mean engineering strain of the tow segments that meet at each node, {warp, weft}.
 std::vector<std::array<double, 2>> nodal_tow_strain(const Blank& blank, const State& state) {
   std::vector<std::array<double, 2>> strain(blank.nodes(), {0.0, 0.0});
   std::vector<std::array<int, 2>> count(blank.nodes(), {0, 0});
@@ -31,6 +26,10 @@ std::vector<std::array<double, 2>> nodal_tow_strain(const Blank& blank, const St
       if (count[n][d] > 0) strain[n][d] /= count[n][d];
   return strain;
 }
+
+namespace {
+
+using Eigen::Vector3d;
 
 Vector3d position_of(const Blank& blank, const State& state, const MaterialPoint& point) {
   Vector3d x = Vector3d::Zero();
@@ -198,6 +197,7 @@ BlankState blank_state(const System& system, const State& state, const StepData*
   for (auto* field : {&s.pressure, &s.slip_speed, &s.friction_coefficient, &s.hersey})
     field->assign(blank.nodes(), 0.0);
   if (step && scene.friction && !step->frictionless) add_contact_fields(system, state, *step, s);
+  s.heat = heat_fields(scene, state.heat);
   for (std::size_t k = 0; k < scene.tools.size(); ++k) {
     if (scene.tools[k].role == Role::punch) s.punch_displacement = -state.tool_z[k];
     if (scene.tools[k].role == Role::binder) s.binder_position = state.tool_z[k];
@@ -249,10 +249,38 @@ double largest_pressure(const System& system, const StepData& step, const State&
   return largest;
 }
 
+namespace {
+
+std::optional<HeatSummary> heat_summary(const std::vector<HistoryRow>& history,
+                                        const std::vector<HeatRow>& hold) {
+  std::vector<HeatRow> rows;
+  for (const HistoryRow& row : history)
+    if (row.heat) rows.push_back(*row.heat);
+  if (rows.empty()) return {};
+  const double stroke_ends = rows.back().time;
+  rows.insert(rows.end(), hold.begin(), hold.end());
+  HeatSummary s;
+  s.last = rows.back();
+  s.held = s.last.time - stroke_ends;
+  constexpr double all = 1.0 - 1e-12;  // a share is a sum of areas
+  double residual = 0.0;
+  for (const HeatRow& row : rows) {
+    if (!s.first_face && row.frozen_faces > 0.0) s.first_face = row.time;
+    if (!s.solid && row.frozen_through >= all) s.solid = row.time;
+    residual = std::max(residual, std::abs(row.residual));
+  }
+  const double through = std::abs(s.last.through_bottom) + std::abs(s.last.through_top);
+  if (through > 0.0) s.residual_share = residual / through;
+  return s;
+}
+
+}  // namespace
+
 void summarise(StampingResult& result, const Blank& blank, const State& state, double peak_force_balance) {
   StampingSummary& s = result.summary;
   s.steps = static_cast<int>(result.history.size());
   s.energy_residual_max = energy_residual_max(result.history);
+  s.heat = heat_summary(result.history, result.hold);
   if (result.history.empty()) return;
   const HistoryRow& last = result.history.back();
   const double work_floor = 0.01 * std::abs(last.work_punch);

@@ -8,6 +8,9 @@ namespace heddle::macroscale {
 /// Fields of the blank for pictures and files. `step` (may be null) gives pressure, slip and friction.
 BlankState blank_state(const System& system, const State& state, const StepData* step);
 
+/// Mean engineering strain of the tow segments that meet at each node, {warp, weft}.
+std::vector<std::array<double, 2>> nodal_tow_strain(const Blank& blank, const State& state);
+
 /// Largest motion of a point of the blank's edge along the inward normal of the flat edge [m].
 double largest_draw_in(const Blank& blank, const State& state);
 

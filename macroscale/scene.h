@@ -1,6 +1,7 @@
 #pragma once
 
 #include <array>
+#include <optional>
 #include <vector>
 
 #include <Eigen/Core>
@@ -9,6 +10,7 @@
 #include "macroscale/blank.h"
 #include "macroscale/contact.h"
 #include "macroscale/stamping.h"
+#include "macroscale/thermal/blank_heat.h"
 #include "macroscale/tools.h"
 #include "mesoscale/fabric_properties.h"
 
@@ -33,6 +35,7 @@ struct Scene {
   ContactPressure contact_pressure = ContactPressure::real;
   ContactSites contact_sites = ContactSites::nodes;
   bool compaction_follows_shear = false;  ///< else the table of gamma = 0 on initial areas
+  std::optional<HeatModel> heat;          ///< absent: one temperature a run
 
   int loaded_tools() const {
     int n = 0;
@@ -50,6 +53,7 @@ struct State {
   std::vector<double> tool_z;                               ///< displacement of each tool along z [m]
   std::vector<double> corner_angle;                         ///< gamma of each corner, 4 a quad [rad]
   std::vector<std::vector<friction::ContactState>> memory;  ///< per tool, per contact point
+  BlankHeat heat;                                           ///< empty: one temperature a run
 
   Eigen::Vector3d node(int i) const { return x.segment<3>(3 * i); }
 };

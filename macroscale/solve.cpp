@@ -72,6 +72,7 @@ void place(const System& system, const StepData& step, const VectorXd& x, State&
     }
   }
   end.memory = start.memory;
+  end.heat = start.heat;
 }
 
 void accept(const System& system, const StepData& step, const VectorXd& x, State& end) {

@@ -82,6 +82,7 @@ void finish_row(HistoryRow& row, const BlankState& blank, const State& state, co
   row.draw_in_max = largest_draw_in(scene.blank, state);
   row.shear_angle_max = 0.0;
   for (double angle : blank.shear_angle) row.shear_angle_max = std::max(row.shear_angle_max, std::abs(angle));
+  if (scene.heat) row.heat = heat_row(scene, state.heat, state.time);
   row.tow_strain_max = 0.0;
   for (const auto& strain : blank.tow_strain)
     row.tow_strain_max = std::max({row.tow_strain_max, strain[0], strain[1]});
@@ -146,6 +147,7 @@ void take_over(StampingResult& result, const Blank& blank, const mesoscale::Fabr
   s.crush_share = at.peak_pressure / last_table_pressure;
   s.friction_swing = at.peak_swing;
   result.history = std::move(at.history);
+  result.hold = std::move(at.hold);
   result.final_state = std::move(at.blank);
   summarise(result, blank, at.state, at.peak_force_balance);
 }
@@ -185,6 +187,7 @@ class Run {
     Ending ending = Ending::failed;
     try {
       ending = drive();
+      if (ending == Ending::done) ending = hold();
     } catch (const NumericalError& error) {
       reason_ = error.what();
       kind_ = FailureKind::not_finite;
@@ -225,6 +228,8 @@ class Run {
 
   Ending resume(const StampingCheckpoint& checkpoint) {
     refuse(fault_of(checkpoint, scene_.blank, scene_.contact_sites, spec_.process.steps));
+    if (scene_.heat.has_value() == checkpoint.state.heat.empty())
+      refuse(scene_.heat ? "it has no temperatures" : "it has temperatures");
     now_ = checkpoint;
     whole_ = now_;
     return Ending::done;
@@ -262,6 +267,26 @@ class Run {
     now_.step = step;
     close_row();
     show_and_keep();
+    return Ending::done;
+  }
+
+  // Tools closed and still after the stroke until no melt is left: heat alone goes on, through contacts as
+  // they are. Steps grow with the time scales of what is left.
+  Ending hold() {
+    if (!scene_.heat || spec_.process.hold == 0.0 || !now_.hold.empty()) return Ending::done;
+    const double begin = now_.state.time, end = begin + spec_.process.hold;
+    const double longest = spec_.process.hold / 100.0;
+    HeatRow row = heat_row(scene_, now_.state.heat, begin);
+    for (double step = std::min(0.01, longest); row.time < end && row.frozen_through < 1.0;
+         step = std::min(1.1 * step, longest)) {
+      if (control_.stop && control_.stop()) return Ending::stopped;
+      const double time = end - row.time < 1.5 * step ? end : row.time + step;
+      hold_heat(system_, time - row.time, now_.state);
+      row = heat_row(scene_, now_.state.heat, time);
+      now_.hold.push_back(row);
+    }
+    now_.blank.heat = heat_fields(scene_, now_.state.heat);
+    now_.blank.time = row.time;
     return Ending::done;
   }
 
@@ -303,6 +328,7 @@ class Run {
     now_.falling_branch |= on_falling_branch(system_, attempt_, end);
     now_.peak_force_balance = std::max(now_.peak_force_balance, now_.row.force_balance);
     end.time = time;
+    advance_heat(system_, now_.state, end);
     start_ = std::move(now_.state);
     now_.state = std::move(end);
     last_step_ = std::move(attempt_);
@@ -393,8 +419,13 @@ StampingResult run_stamping(const StampingSpec& spec, const mesoscale::FabricPro
   Problems problems = check(spec);
   const Problems of_fabric = mesoscale::check(fabric);
   problems.insert(problems.end(), of_fabric.begin(), of_fabric.end());
+  if (spec.thermal) {
+    const Problems of_heat = thermal::check_films(*spec.thermal, fabric.areal_density);
+    problems.insert(problems.end(), of_heat.begin(), of_heat.end());
+  }
   if (!problems.empty()) throw InputError(std::move(problems));
-  if (control.resume_from && control.resume_from->step == spec.process.steps) {
+  const bool held = spec.process.hold == 0.0 || (control.resume_from && !control.resume_from->hold.empty());
+  if (control.resume_from && control.resume_from->step == spec.process.steps && held) {
     if (control.keep) control.keep(*control.resume_from, true);
     return result_of(spec, fabric, *control.resume_from);
   }

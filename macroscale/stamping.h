@@ -13,6 +13,7 @@
 #include "friction/model.h"
 #include "macroscale/cell_piece.h"
 #include "macroscale/outline.h"
+#include "macroscale/thermal/blank_heat.h"
 #include "macroscale/tool_file.h"
 #include "mesoscale/fabric_properties.h"
 
@@ -69,9 +70,10 @@ struct ProcessSpec {
   double time = 0.43;     ///< of the stroke at speed_scale 1 [s]
   double slow_down =
       0.0;  ///< the punch stops linearly over this last part [s]; 0.01 in the paper (section 3.2.2)
-  double speed_scale = 1.0;           ///< 0.5 = half speed [-]
-  int steps = 100;                    ///< equal in stroke
-  double binder_force = 650.0;        ///< [N]
+  double speed_scale = 1.0;     ///< 0.5 = half speed [-]
+  int steps = 100;              ///< equal in stroke
+  double binder_force = 650.0;  ///< [N]
+  double hold = 0.0;  ///< longest time that the tools stay closed after the stroke, until no melt is left [s]
   double tool_temperature = 358.15;   ///< [K]
   double blank_temperature = 453.15;  ///< [K]
 };
@@ -100,6 +102,7 @@ struct StampingSpec {
   ContactSites contact_sites = ContactSites::nodes;
   bool compaction_follows_shear =
       false;  ///< p(d, gamma) on current areas; off: the flat fabric's, initial areas
+  std::optional<thermal::ThermalSpec> thermal;  ///< absent: one temperature a run
 };
 
 /// One accepted step: a row of history.csv. Energies are cumulative since the punch touched [J].
@@ -121,6 +124,7 @@ struct HistoryRow {
   double ledger_residual = 0.0;        ///< what the columns above leave over [J]
   double force_balance = 0.0;          ///< |sum F - sum m a| [N]
   double friction_work_outside = 0.0;  ///< done outside the calibrated box [J]
+  std::optional<HeatRow> heat;         ///< of a run with temperatures
 };
 
 /// A point of the blank's edge, and how far it has moved in.
@@ -145,8 +149,19 @@ struct BlankState {
   std::vector<double> shear_angle;                ///< per node, signed [rad]
   std::vector<std::array<double, 2>> tow_strain;  ///< per node {warp, weft} [-]
   std::vector<double> pressure, slip_speed, friction_coefficient,
-      hersey;  ///< per node, of the face that presses most
+      hersey;       ///< per node, of the face that presses most
+  HeatFields heat;  ///< empty: one temperature a run
   double time = 0.0, punch_displacement = 0.0, binder_position = 0.0;
+};
+
+/// Heat of a run, from its rows.
+struct HeatSummary {
+  HeatRow last;                      ///< at the end of the stroke, or of the hold after it
+  std::optional<double> first_face;  ///< when a first face froze [s]
+  std::optional<double> solid;       ///< when no melt was left [s]
+  double residual_share =
+      0.0;            ///< largest residual of the heat balance over the heat that went through faces [-]
+  double held = 0.0;  ///< how long the tools stayed closed after the stroke [s]
 };
 
 struct StampingSummary {
@@ -172,8 +187,9 @@ struct StampingSummary {
   int factorisations = 0;           ///< of the matrix; more than Newton iterations where it was indefinite
   std::array<double, 2> spacing{};  ///< as used [m]
   bool completed = false;
-  bool stopped = false;  ///< from outside, between two Newton iterations; no failure
-  std::string failure;   ///< why it stopped, when not completed
+  bool stopped = false;             ///< from outside, between two Newton iterations; no failure
+  std::string failure;              ///< why it stopped, when not completed
+  std::optional<HeatSummary> heat;  ///< of a run with temperatures
 };
 
 /// What ended a step, by the cure it asks for (macroscale/advice.h).
@@ -209,6 +225,7 @@ struct StampingFailure {
 struct StampingResult {
   StampingSummary summary;
   std::vector<HistoryRow> history;
+  std::vector<HeatRow> hold;  ///< while the tools stayed closed after the stroke
   BlankState final_state;
   std::optional<StampingFailure> failure;  ///< present where summary.failure is
 };

@@ -35,6 +35,7 @@ Scene stamping_scene(const StampingSpec& spec, const mesoscale::FabricProperties
   scene.contact_pressure = spec.contact_pressure;
   scene.contact_sites = spec.contact_sites;
   scene.compaction_follows_shear = spec.compaction_follows_shear;
+  if (spec.thermal) scene.heat = heat_model(*spec.thermal, fabric.areal_density, scene.blank_temperature);
   return scene;
 }
 

@@ -138,11 +138,13 @@ void System::evaluate(const StepData& step, const VectorXd& x, Position& at) con
   const CornerLaw law = corner_law(step);
   for_each(static_cast<int>(blank.quads.size()), [&](int q) {
     const auto corners = corners_of(blank.quads[q]);
+    CornerLaw here = law;
+    here.rate_consistency *= rate_factor(step, q);
     for (int k = 0; k < 4; ++k) {
       const Corner& c = corners[k];
       const Vector3d origin = node_of(x, c.node);
       at.corners[4 * q + k] =
-          corner_point(law, node_of(x, c.along_warp) - origin, node_of(x, c.along_weft) - origin,
+          corner_point(here, node_of(x, c.along_warp) - origin, node_of(x, c.along_weft) - origin,
                        step.start->corner_angle[4 * q + k]);
     }
   });

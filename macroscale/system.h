@@ -109,6 +109,10 @@ class System {
   /// Corner law of this step in a whole cell (time step and rate term included); `trimmed` gives a cut
   /// cell's.
   CornerLaw corner_law(const StepData& step) const;
+  /// Factor on its rate term in one cell: 1 at the blank's temperature.
+  double rate_factor(const StepData& step, std::size_t quad) const {
+    return step.start->heat.empty() ? 1.0 : step.start->heat.rate_factor[quad];
+  }
 
   const Curve& compaction() const { return compaction_; }
   /// The same for a point at x of the fabric, not sheared, against tool k displaced by z.

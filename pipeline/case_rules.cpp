@@ -10,6 +10,7 @@
 #include "friction/test_design.h"
 #include "pipeline/case_settings.h"
 #include "pipeline/stamping_study_keys.h"
+#include "pipeline/thermal_keys.h"
 
 namespace heddle::pipeline {
 
@@ -255,6 +256,7 @@ Problems check_between_keys(const Case& a_case, const ReadConfig& config) {
   if (a_case.study && !any_below(config.failed, {"weave", "cell", "study"}))
     append(problems, check_study(*a_case.study, *a_case.cell));
   if (a_case.cell && a_case.stamping) append(problems, check_clearance(*a_case.cell, *a_case.stamping));
+  append(problems, check_thermal(a_case, config));
   drop_unknowable(problems, config.failed);
   return problems;
 }

@@ -6,6 +6,7 @@
 #include "macroscale/outline_file.h"
 #include "pipeline/friction_keys.h"
 #include "pipeline/solid_keys.h"
+#include "pipeline/thermal_keys.h"
 
 namespace heddle::pipeline {
 namespace {
@@ -252,6 +253,7 @@ macroscale::ProcessSpec process_of(const Settings& settings) {
   take(settings, "process.punch.speed_scale", process.speed_scale);
   take(settings, "process.steps", process.steps);
   take(settings, "process.binder_force", process.binder_force);
+  take(settings, "process.hold", process.hold);
   take(settings, "process.tool_temperature", process.tool_temperature);
   take(settings, "process.blank_temperature", process.blank_temperature);
   return process;
@@ -304,6 +306,7 @@ macroscale::StampingSpec stamping_of(const Settings& settings, const std::filesy
   stamping.contact_pressure = contact_pressure_of(settings);
   if (settings.is("contact.points", "gauss")) stamping.contact_sites = macroscale::ContactSites::gauss;
   stamping.compaction_follows_shear = settings.is("contact.compaction", "sheared");
+  stamping.thermal = thermal_of(settings);
   return stamping;
 }
 

@@ -16,6 +16,7 @@
 #include "pipeline/indicator_outputs.h"
 #include "pipeline/interrupt.h"
 #include "pipeline/orientation.h"
+#include "pipeline/part_stiffness.h"
 #include "pipeline/resumption.h"
 #include "pipeline/run_folder.h"
 #include "pipeline/solid_stage.h"
@@ -129,6 +130,10 @@ void run_stamping(const Case& a_case, RunFolder& folder, const Cache& cache, Fin
   if (findings.indicators.empty()) return;  // the binder never closed
   folder.write("macroscale/indicators.csv", indicators_csv(findings.indicators));
   folder.log(indicator_line(findings.indicators));
+  if (a_case.stamping->thermal && findings.stamping->summary.completed && findings.solid &&
+      findings.solid->sheared.size() >= 2)
+    folder.write("macroscale/part_stiffness.csv",
+                 part_stiffness_csv(part_stiffness(blank, findings.solid->sheared)));
 }
 
 // The companion run on the coarser grid, of a stamping that came to its end.

@@ -14,6 +14,7 @@
 #include "pipeline/solid_keys.h"
 #include "pipeline/stamping_study_keys.h"
 #include "pipeline/study_keys.h"
+#include "pipeline/thermal_keys.h"
 
 namespace heddle::pipeline {
 namespace {
@@ -329,6 +330,9 @@ std::vector<Key> process_keys() {
        .range = "[-100 degC, 500 degC]", .stage = stamping, .help = "Of punch, die and binder."},
       {.path = "process.blank_temperature", .type = KeyType::quantity, .unit = "degC", .presence = required,
        .range = "[-100 degC, 500 degC]", .stage = stamping, .help = "Of the fabric."},
+      {.path = "process.hold", .type = KeyType::quantity, .unit = "s", .presence = defaulted, .default_text = "0 s",
+       .range = "[0 s, 36000 s]", .stage = stamping, .used_when = "thermal",
+       .help = "Longest time that the tools stay closed and still after the stroke; it ends when no melt is left."},
   };
 }
 
@@ -521,6 +525,7 @@ std::vector<Key> all_keys() {
   append(keys, friction_test_keys());
   append(keys, rig_keys());
   append(keys, process_keys());
+  append(keys, thermal_keys());
   append(keys, blank_keys());
   append(keys, contact_keys());
   append(keys, tool_keys());

@@ -257,6 +257,14 @@ QuadMesh mesh_of(const macroscale::BlankState& blank) {
   add({"slip_speed_m_s", 1, blank.slip_speed});
   add({"friction_coefficient", 1, blank.friction_coefficient});
   add({"hersey_number", 1, blank.hersey});
+  const auto add_celsius = [&](const char* name, std::vector<double> kelvin) {
+    for (double& value : kelvin) value -= 273.15;
+    add({name, 1, std::move(kelvin)});
+  };
+  add_celsius("temperature_bottom_C", blank.heat.bottom);
+  add_celsius("temperature_top_C", blank.heat.top);
+  add_celsius("temperature_mean_C", blank.heat.mean);
+  add({"crystallised_share", 1, blank.heat.crystallised});
   return mesh;
 }
 

@@ -104,6 +104,7 @@ ReportInput report_input(const Case& a_case, const Findings& findings) {
   if (findings.stamping) {
     input.stamping = findings.stamping->summary;
     input.history = findings.stamping->history;
+    input.hold = findings.stamping->hold;
     input.blank = findings.stamping->final_state;
     input.grid_error = findings.grid_error;
     input.artefact = a_case.stamping->artefact;

@@ -38,19 +38,25 @@ struct Column {
   double (*value)(const Row&);
 };
 
-template <class Row, std::size_t N>
-std::string table(std::span<const Row> rows, const Column<Row> (&columns)[N]) {
+template <class Row>
+std::string table(std::span<const Row> rows, std::span<const Column<Row>> columns) {
   std::string out;
-  for (std::size_t c = 0; c < N; ++c) out += fmt::format("{}{}", c > 0 ? "," : "", columns[c].name);
+  for (std::size_t c = 0; c < columns.size(); ++c)
+    out += fmt::format("{}{}", c > 0 ? "," : "", columns[c].name);
   out += '\n';
   for (std::size_t r = 0; r < rows.size(); ++r) {
-    for (std::size_t c = 0; c < N; ++c) {
+    for (std::size_t c = 0; c < columns.size(); ++c) {
       if (c > 0) out += ',';
       out += finite(columns[c].value(rows[r]), columns[c].name, r + 1);
     }
     out += '\n';
   }
   return out;
+}
+
+template <class Row, std::size_t N>
+std::string table(std::span<const Row> rows, const Column<Row> (&columns)[N]) {
+  return table<Row>(rows, std::span<const Column<Row>>(columns));
 }
 
 using History = macroscale::HistoryRow;
@@ -84,6 +90,19 @@ constexpr Column<History> history_columns[] = {
     {"force_balance_N", [](const History& r) { return r.force_balance; }},
     // A share of the friction columns, not a column of the ledger: it stands behind them and is not summed.
     {"friction_work_outside_calibration_J", [](const History& r) { return r.friction_work_outside; }},
+};
+
+// Of a run with temperatures; behind all others.
+constexpr Column<History> heat_columns[] = {
+    {"temperature_mean_C", [](const History& r) { return r.heat->mean_temperature - zero_celsius; }},
+    {"face_temperature_min_C", [](const History& r) { return r.heat->coldest_face - zero_celsius; }},
+    {"crystallised_share", [](const History& r) { return r.heat->crystallised; }},
+    {"frozen_faces_share", [](const History& r) { return r.heat->frozen_faces; }},
+    {"frozen_through_share", [](const History& r) { return r.heat->frozen_through; }},
+    {"heat_through_bottom_J", [](const History& r) { return r.heat->through_bottom; }},
+    {"heat_through_top_J", [](const History& r) { return r.heat->through_top; }},
+    {"heat_of_friction_J", [](const History& r) { return r.heat->of_friction; }},
+    {"heat_residual_J", [](const History& r) { return r.heat->residual; }},
 };
 
 constexpr Column<FrictionCurveRow> curve_columns[] = {
@@ -175,8 +194,23 @@ std::string shortest(double value) {
 }
 
 std::string history_csv(std::span<const History> rows) {
-  return table(rows, history_columns);
+  if (rows.empty() || !rows.front().heat) return table(rows, history_columns);
+  std::vector<Column<History>> columns(std::begin(history_columns), std::end(history_columns));
+  columns.insert(columns.end(), std::begin(heat_columns), std::end(heat_columns));
+  return table<History>(rows, columns);
 }
+
+std::string hold_csv(std::span<const macroscale::HeatRow> rows) {
+  std::vector<History> as_history(rows.size());
+  std::vector<Column<History>> columns{history_columns[0]};
+  columns.insert(columns.end(), std::begin(heat_columns), std::end(heat_columns));
+  for (std::size_t k = 0; k < rows.size(); ++k) {
+    as_history[k].time = rows[k].time;
+    as_history[k].heat = rows[k];
+  }
+  return table<History>(as_history, columns);
+}
+
 std::string curve_csv(std::span<const FrictionCurveRow> rows) {
   return table(rows, curve_columns);
 }

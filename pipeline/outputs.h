@@ -48,6 +48,10 @@ std::string shortest(double value);
 
 std::string history_csv(std::span<const macroscale::HistoryRow> rows);
 
+/// Temperatures while the tools stay closed after the stroke: time_s and the columns that a run with
+/// temperatures adds to history.csv.
+std::string hold_csv(std::span<const macroscale::HeatRow> rows);
+
 /// One test of the sled, by the model, and what others found for it. SI units.
 struct FrictionTestRow {
   std::string name;                           ///< "baseline"

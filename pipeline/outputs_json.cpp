@@ -50,6 +50,23 @@ Json stack_json(const mesoscale::StackSummary& stack) {
           {"void_share", stack.shares.voids}};
 }
 
+Json heat_json(const macroscale::HeatSummary& heat) {
+  constexpr double zero_celsius = 273.15;  // [K]
+  Json out{{"temperature_mean_C", heat.last.mean_temperature - zero_celsius},
+           {"face_temperature_min_C", heat.last.coldest_face - zero_celsius},
+           {"crystallised_share", heat.last.crystallised},
+           {"frozen_faces_share", heat.last.frozen_faces},
+           {"frozen_through_share", heat.last.frozen_through},
+           {"heat_through_bottom_J", heat.last.through_bottom},
+           {"heat_through_top_J", heat.last.through_top},
+           {"heat_of_friction_J", heat.last.of_friction},
+           {"heat_residual_max", heat.residual_share}};
+  if (heat.first_face) out["first_face_frozen_s"] = *heat.first_face;
+  if (heat.solid) out["solid_s"] = *heat.solid;
+  if (heat.held > 0.0) out["held_s"] = heat.held;
+  return out;
+}
+
 Json stamping_json(const macroscale::StampingSummary& summary) {
   Json rays = Json::array();
   for (const double draw_in : summary.draw_in_rays) rays.push_back(1e3 * draw_in);
@@ -76,6 +93,7 @@ Json stamping_json(const macroscale::StampingSummary& summary) {
   out["rejected_steps"] = summary.rejected_steps;
   out["newton_iterations"] = summary.newton_iterations;
   out["factorisations"] = summary.factorisations;
+  if (summary.heat) out["heat"] = heat_json(*summary.heat);
   if (!summary.failure.empty()) out["failure"] = summary.failure;
   return out;
 }

@@ -9,6 +9,7 @@
 #include "pipeline/coupon_report.h"
 #include "pipeline/page.h"
 #include "pipeline/report_figures.h"
+#include "pipeline/report_heat.h"
 #include "pipeline/report_solid.h"
 #include "pipeline/rig_figures.h"
 
@@ -306,6 +307,7 @@ std::string report_html(const ReportInput& input) {
   out += header(input) + main_results(input) + verdict_list(verdicts(input));
   out += section("The formed part", formed_part(input));
   out += section("Forces and motion", forces(input));
+  out += section("Temperatures", heat_section(input));
   out += section("Is the answer sound?", soundness(input));
   out += section("The weave", weave(input));
   if (input.stack) out += section("Plies on one another", stack_section(*input.stack));

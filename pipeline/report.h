@@ -56,6 +56,7 @@ struct ReportInput {
 
   std::optional<macroscale::StampingSummary> stamping = {};
   std::vector<macroscale::HistoryRow> history = {};
+  std::vector<macroscale::HeatRow> hold = {};  ///< after the stroke, tools closed
   std::optional<macroscale::BlankState> blank = {};
   std::optional<macroscale::GridError> grid_error = {};
   macroscale::ArtefactSpec artefact = {};

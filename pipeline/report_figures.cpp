@@ -269,8 +269,9 @@ void require_complete(const macroscale::BlankState& blank) {
 /// that the outline cuts.
 class PictureMesh {
  public:
-  PictureMesh(const macroscale::BlankState& blank, MeshPicture& picture)
-      : blank_(blank), picture_(picture), point_of_(blank.position.size(), -1) {
+  /// @param value  of each node
+  PictureMesh(const macroscale::BlankState& blank, std::vector<double> value, MeshPicture& picture)
+      : blank_(blank), picture_(picture), value_(std::move(value)), point_of_(blank.position.size(), -1) {
     node_at_.assign(static_cast<std::size_t>(blank.nu + 1) * static_cast<std::size_t>(blank.nv + 1), -1);
     cell_.assign(static_cast<std::size_t>(blank.nu) * static_cast<std::size_t>(blank.nv), Cell::absent);
     for (std::size_t n = 0; n < blank.grid.size(); ++n)
@@ -321,14 +322,12 @@ class PictureMesh {
     return true;
   }
 
-  double angle_of(std::size_t node) const { return degrees * std::abs(blank_.shear_angle[node]); }
-
   int point(int i, int j) {
     const auto node = static_cast<std::size_t>(node_at_[line(i, j)]);
     if (point_of_[node] < 0) {
       point_of_[node] = static_cast<int>(picture_.points.size());
       picture_.points.push_back(blank_.position[node]);
-      picture_.value.push_back(angle_of(node));
+      picture_.value.push_back(value_[node]);
     }
     return point_of_[node];
   }
@@ -342,7 +341,7 @@ class PictureMesh {
   void add_piece(const macroscale::CellPiece& piece) {
     const auto& quad = blank_.quads[static_cast<std::size_t>(piece.quad)];
     double value = 0.0;
-    for (const int node : quad) value += 0.25 * angle_of(static_cast<std::size_t>(node));
+    for (const int node : quad) value += 0.25 * value_[static_cast<std::size_t>(node)];
     const int first = static_cast<int>(picture_.points.size());
     for (const auto& corner : piece.corners) {
       picture_.points.push_back(position_in(blank_, quad, corner));
@@ -354,6 +353,7 @@ class PictureMesh {
 
   const macroscale::BlankState& blank_;
   MeshPicture& picture_;
+  std::vector<double> value_;
   std::vector<int> node_at_, point_of_;
   std::vector<Cell> cell_;
 };
@@ -362,7 +362,9 @@ class PictureMesh {
 MeshPicture mesh_picture(const macroscale::BlankState& blank) {
   require_complete(blank);
   MeshPicture picture;
-  PictureMesh(blank, picture).build();
+  std::vector<double> angle = blank.shear_angle;
+  for (double& value : angle) value = degrees * std::abs(value);
+  PictureMesh(blank, std::move(angle), picture).build();
   const double largest = *std::max_element(picture.value.begin(), picture.value.end());
   picture.colours = {0.0, largest > 0.0 ? largest : 1.0, "Shear angle", "°", ColourMap::angle};
   picture.width = half_width;
@@ -398,6 +400,22 @@ Canvas top_picture(const macroscale::BlankState& blank, double largest_angle) {
   if (largest_angle > 0.0) picture.colours.high = degrees * largest_angle;
   picture.label = "The formed blank from above, coloured by shear angle, with its first outline";
   picture.outlines = flat_outlines(blank.outline);
+  return draw(picture);
+}
+
+Canvas top_picture(const macroscale::BlankState& blank, std::vector<double> value, ColourScale colours,
+                   std::string label) {
+  require_complete(blank);
+  if (value.size() != blank.position.size())
+    throw std::invalid_argument(
+        fmt::format("blank of {} nodes: {} values do not fit", blank.position.size(), value.size()));
+  MeshPicture picture;
+  PictureMesh(blank, std::move(value), picture).build();
+  picture.colours = std::move(colours);
+  picture.label = std::move(label);
+  picture.outlines = flat_outlines(blank.outline);
+  picture.width = half_width;
+  picture.height = 450.0;
   return draw(picture);
 }
 

@@ -30,6 +30,10 @@ Canvas formed_picture(const macroscale::BlankState& blank);
 /// @param largest_angle  upper end of the colour scale [rad]; 0: the blank's own largest
 Canvas top_picture(const macroscale::BlankState& blank, double largest_angle = 0.0);
 
+/// The same coloured by any values of the nodes.
+Canvas top_picture(const macroscale::BlankState& blank, std::vector<double> value, ColourScale colours,
+                   std::string label);
+
 /// Share of the residual in the work the punch has done so far, by the measure of summary.json: the work
 /// counts as at least 1 % of its final value, so that the first step does not divide by nothing.
 std::vector<double> residual_shares(const std::vector<macroscale::HistoryRow>& history);

@@ -5,6 +5,7 @@
 #include <numbers>
 
 #include "pipeline/report.h"
+#include "pipeline/report_heat.h"
 #include "pipeline/report_solid.h"
 
 namespace heddle::pipeline {
@@ -241,6 +242,9 @@ std::vector<Verdict> verdicts(const ReportInput& input) {
     symmetry(out, *input.stamping);
     artefacts(out, input.artefact);
     friction_range(out, *input.stamping);
+    if (input.stamping->heat)
+      for (Verdict& verdict : heat_verdicts(*input.stamping->heat))
+        out.add(verdict.tone, std::move(verdict.text));
   }
   friction_comparison(out, input);
   overlap(out, input.tow_bodies);

@@ -142,6 +142,10 @@ macroscale::StampingResult run_stamping_stage(const macroscale::StampingSpec& sp
   };
   macroscale::StampingResult result = folder.stage("macroscale", work);
   folder.write("macroscale/history.csv", history_csv(result.history));
+  if (!result.hold.empty()) {
+    folder.write("macroscale/hold.csv", hold_csv(result.hold));
+    folder.write("macroscale/blank_held.vtu", vtu(mesh_with_indicators(result.final_state, fabric)));
+  }
   if (!result.summary.completed && !result.summary.stopped) write_failure(result, fabric, folder);
   return result;
 }

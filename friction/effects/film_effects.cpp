@@ -45,16 +45,9 @@ Sensitive as_thin_as(const std::array<Sensitive, film_points>& through, const Te
     mean = mean + film_point_weight[i] * through[i];
     thinness = thinness + film_point_weight[i] * exp(through[i].mapped(a.log, a.slope) / -film.index);
   }
-  // The inverse of a monotone shift: Newton from the mean.
-  const double log_shift = -film.index * std::log(thinness.value);
-  double temperature = mean.value;
-  for (int k = 0; k < 50; ++k) {
-    const TemperatureShift a = temperature_shift(law, film, temperature);
-    if (a.slope == 0.0) return mean;  // a resin that heat does not thin
-    const double step = (log_shift - a.log) / a.slope;
-    temperature += step;
-    if (std::abs(step) < 1e-12 * temperature) break;
-  }
+  if (temperature_shift(law, film, mean.value).slope == 0.0) return mean;  // a resin that heat does not thin
+  const double temperature =
+      temperature_at_shift(law, film, -film.index * std::log(thinness.value), mean.value);
   const double slope = temperature_shift(law, film, temperature).slope;
   return thinness.mapped(temperature, -film.index / (thinness.value * slope));
 }

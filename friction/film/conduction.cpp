@@ -8,17 +8,6 @@ namespace heddle::friction {
 
 namespace {
 
-/// Conductance between the middles of cell i and the next [W/(m^2 K)].
-double conductance(const ConductionGrid& grid, std::size_t i) {
-  return 1.0 / (0.5 * grid.width[i] / grid.conductivity[i] + grid.resistance[i] +
-                0.5 * grid.width[i + 1] / grid.conductivity[i + 1]);
-}
-
-/// Between the middle of an end cell and its face.
-double end_conductance(const ConductionGrid& grid, std::size_t i) {
-  return 2.0 * grid.conductivity[i] / grid.width[i];
-}
-
 /// Heat that flows into each cell [W/m^2].
 std::vector<double> inflow(const ConductionGrid& grid, const ConductionEnds& ends,
                            std::span<const double> source, const std::vector<double>& temperature) {
@@ -42,15 +31,15 @@ std::vector<double> solve_implicit(const ConductionGrid& grid, const ConductionE
   std::vector<double> diagonal(n), off(n, 0.0);
   for (std::size_t i = 0; i < n; ++i) diagonal[i] = grid.heat_capacity[i] * grid.width[i];
   for (std::size_t i = 0; i + 1 < n; ++i) {
-    const double c = a * conductance(grid, i);
+    const double c = a * conductance_to_next(grid, i);
     diagonal[i] += c;
     diagonal[i + 1] += c;
     off[i] = -c;
   }
   const auto hold = [&](std::size_t i, const std::optional<double>& held) {
     if (!held) return;
-    diagonal[i] += a * end_conductance(grid, i);
-    b[i] += a * end_conductance(grid, i) * *held;
+    diagonal[i] += a * conductance_to_face(grid, i);
+    b[i] += a * conductance_to_face(grid, i) * *held;
   };
   hold(0, ends.left);
   hold(n - 1, ends.right);
@@ -65,6 +54,15 @@ std::vector<double> solve_implicit(const ConductionGrid& grid, const ConductionE
 }
 
 }  // namespace
+
+double conductance_to_next(const ConductionGrid& grid, std::size_t i) {
+  return 1.0 / (0.5 * grid.width[i] / grid.conductivity[i] + grid.resistance[i] +
+                0.5 * grid.width[i + 1] / grid.conductivity[i + 1]);
+}
+
+double conductance_to_face(const ConductionGrid& grid, std::size_t i) {
+  return 2.0 * grid.conductivity[i] / grid.width[i];
+}
 
 double Material::effusivity() const {
   return std::sqrt(conductivity * heat_capacity);
@@ -130,17 +128,17 @@ void conduct(const ConductionGrid& grid, const ConductionEnds& ends, std::span<c
 }
 
 double flow_to_next(const ConductionGrid& grid, std::span<const double> temperature, std::size_t i) {
-  return conductance(grid, i) * (temperature[i] - temperature[i + 1]);
+  return conductance_to_next(grid, i) * (temperature[i] - temperature[i + 1]);
 }
 
 double flow_through_left(const ConductionGrid& grid, const ConductionEnds& ends,
                          std::span<const double> temperature) {
-  return ends.left ? end_conductance(grid, 0) * (*ends.left - temperature.front()) : 0.0;
+  return ends.left ? conductance_to_face(grid, 0) * (*ends.left - temperature.front()) : 0.0;
 }
 
 double flow_through_right(const ConductionGrid& grid, const ConductionEnds& ends,
                           std::span<const double> temperature) {
-  return ends.right ? end_conductance(grid, grid.size() - 1) * (*ends.right - temperature.back()) : 0.0;
+  return ends.right ? conductance_to_face(grid, grid.size() - 1) * (*ends.right - temperature.back()) : 0.0;
 }
 
 double heat_in(const ConductionGrid& grid, std::span<const double> temperature, std::size_t first,

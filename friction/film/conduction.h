@@ -39,6 +39,11 @@ std::vector<double> growing_widths(double thickness, double first, double ratio)
 /// The same from both faces towards the middle.
 std::vector<double> widths_from_both_faces(double thickness, double first, double ratio);
 
+/// Between the middles of cell i and the next [W/(m^2 K)].
+double conductance_to_next(const ConductionGrid& grid, std::size_t i);
+/// Between the middle of an end cell and its face [W/(m^2 K)].
+double conductance_to_face(const ConductionGrid& grid, std::size_t i);
+
 /// What holds at the two ends: a temperature, or no flow of heat where there is none.
 struct ConductionEnds {
   std::optional<double> left = {}, right = {};  ///< [K]

@@ -101,6 +101,30 @@ TemperatureShift temperature_shift(const TemperatureLaw& law, const PowerLawFilm
   return std::visit([&](const auto& chosen) { return shift_of(chosen, film, temperature); }, law);
 }
 
+double temperature_at_shift(const TemperatureLaw& law, const PowerLawFilm& film, double log_shift,
+                            double start) {
+  double temperature = start;
+  for (int k = 0; k < 50; ++k) {
+    const TemperatureShift a = temperature_shift(law, film, temperature);
+    if (a.slope == 0.0) return start;
+    const double step = (log_shift - a.log) / a.slope;
+    temperature += step;
+    if (std::abs(step) < 1e-12 * temperature) break;
+  }
+  return temperature;
+}
+
+double temperature_as_thin_as(const TemperatureLaw& law, const PowerLawFilm& film,
+                              std::span<const double> temperature, std::span<const double> thickness) {
+  double whole = 0.0, mean = 0.0, thinness = 0.0;  // thinness: of a^(-1/n)
+  for (std::size_t i = 0; i < temperature.size(); ++i) {
+    whole += thickness[i];
+    mean += thickness[i] * temperature[i];
+    thinness += thickness[i] * std::exp(-temperature_shift(law, film, temperature[i]).log / film.index);
+  }
+  return temperature_at_shift(law, film, -film.index * std::log(thinness / whole), mean / whole);
+}
+
 PowerLawFilm::Value viscosity(const Rheology& rheology, const PowerLawFilm& film, double rate,
                               double temperature) {
   if (rheology.of_the_film()) return film.evaluate(rate, temperature);

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <array>
+#include <span>
 #include <variant>
 
 #include "friction/power_law_film.h"
@@ -76,6 +77,16 @@ struct TemperatureShift {
 };
 /// @param temperature  [K], > 0
 TemperatureShift temperature_shift(const TemperatureLaw& law, const PowerLawFilm& film, double temperature);
+
+/// The temperature that has this ln a: the inverse of the shift, by Newton's method.
+/// @param start  where to begin, and the answer where heat does not thin the resin [K]
+double temperature_at_shift(const TemperatureLaw& law, const PowerLawFilm& film, double log_shift,
+                            double start);
+/// Temperature of an even film as thin as one with these temperatures through it. One stress goes through a
+/// film, so it is sheared where it is hottest: a(T)^(-1/n) is the mean of that of its layers.
+/// @param temperature, thickness  of the layers, equal in number [K], [m]
+double temperature_as_thin_as(const TemperatureLaw& law, const PowerLawFilm& film,
+                              std::span<const double> temperature, std::span<const double> thickness);
 
 /// Viscosity of the film. The shift multiplies the viscous part of PowerLaw, Bingham and HerschelBulkley (a
 /// yield stress is held); CarreauYasuda and Cross follow time-temperature superposition, eta = a F(a g).
