@@ -71,7 +71,7 @@ TEST_CASE("a cell of the part has the stiffness of its trellis angle, in axes al
 TEST_CASE("a cell sheared the other way is the mirror image: what couples shear changes sign",
           "[pipeline][heat]") {
   const auto cell = pipeline::part_stiffness(one_cell(-0.3, 0.0), table())[0];
-  const auto& of = table()[1].plate;
+  const mesoscale::solid::Matrix6 of = table()[1].plate;
   CHECK(cell.shear_angle == Approx(-0.3));
   for (int i = 0; i < 6; ++i)
     for (int j = 0; j < 6; ++j) {
