@@ -118,7 +118,7 @@ struct MultifrontalFactor::Implementation {
   }
 
   // Subtrees with more work than this have their branches run side by side.
-  bool branches(int s) const { return work[s] > total_work / 8.0; }
+  bool branches(int s) const { return work[s] > total_work / 16.0; }
 
   // A subtree done by one thread has its updates in one room, a parent's before its children's: what is
   // needed is a path's and its siblings'. Updates of branching supernodes and of those below them live by

@@ -92,7 +92,7 @@ std::array<thermal::Face, 2> faces_at(const System& system, const State& state, 
 // Work that friction on tool k did on each node over a step [J/m^2].
 std::vector<double> friction_work(const System& system, const State& start, const State& end, std::size_t k) {
   const Blank& blank = system.scene().blank;
-  std::vector<double> work(static_cast<std::size_t>(blank.nodes()), 0.0), area(work.size(), 0.0);
+  std::vector<double> work(static_cast<std::size_t>(blank.nodes()), 0.0);
   for (int i = 0; i < system.contacts(); ++i) {
     const ContactPoint& point = system.contact_points()[static_cast<std::size_t>(i)];
     const auto n = static_cast<std::size_t>(i);
@@ -103,12 +103,9 @@ std::vector<double> friction_work(const System& system, const State& start, cons
     }
     for (std::size_t a = 0; a < static_cast<std::size_t>(point.nodes); ++a) {
       const auto node = static_cast<std::size_t>(point.node[a]);
-      work[node] += point.weight[a] * point.area * of_point;
-      area[node] += point.weight[a] * point.area;
+      work[node] += point.weight[a] * point.area * of_point / blank.node_area[node];
     }
   }
-  for (std::size_t n = 0; n < work.size(); ++n)
-    if (area[n] > 0.0) work[n] /= area[n];
   return work;
 }
 

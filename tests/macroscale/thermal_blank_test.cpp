@@ -75,7 +75,8 @@ TEST_CASE("a blank among tools and air as warm as itself is stamped as with one 
 
 TEST_CASE("cold tools cool the faces they touch, stiffen the melt and raise the force",
           "[macroscale][thermal]") {
-  const StampingSpec spec = small_case();
+  StampingSpec spec = small_case();
+  spec.contact_sites = GENERATE(ContactSites::nodes, ContactSites::gauss);
   const StampingResult cold = run(spec);
   REQUIRE(cold.summary.completed);
   const HeatRow& heat = cold.summary.heat->last;
