@@ -13,6 +13,19 @@
 
 namespace heddle::macroscale {
 
+std::vector<double> corner_angles(const Blank& blank, const State& state) {
+  std::vector<double> angle(4 * blank.quads.size());
+  for (std::size_t q = 0; q < blank.quads.size(); ++q) {
+    const auto corners = corners_of(blank.quads[q]);
+    for (std::size_t k = 0; k < 4; ++k) {
+      const Corner& c = corners[k];
+      angle[4 * q + k] = corner_angle(state.node(c.along_warp) - state.node(c.node),
+                                      state.node(c.along_weft) - state.node(c.node));
+    }
+  }
+  return angle;
+}
+
 namespace {
 
 using Eigen::Vector3d;
@@ -62,15 +75,7 @@ void place(const System& system, const StepData& step, const VectorXd& x, State&
   end.tool_z.resize(scene.tools.size());
   for (int k = 0; k < static_cast<int>(scene.tools.size()); ++k)
     end.tool_z[k] = system.tool_position(step, x, k);
-  end.corner_angle.resize(start.corner_angle.size());
-  for (std::size_t q = 0; q < scene.blank.quads.size(); ++q) {
-    const auto corners = corners_of(scene.blank.quads[q]);
-    for (std::size_t k = 0; k < 4; ++k) {
-      const Corner& c = corners[k];
-      end.corner_angle[4 * q + k] =
-          corner_angle(end.node(c.along_warp) - end.node(c.node), end.node(c.along_weft) - end.node(c.node));
-    }
-  }
+  end.corner_angle = corner_angles(scene.blank, end);
   end.memory = start.memory;
   end.heat = start.heat;
 }

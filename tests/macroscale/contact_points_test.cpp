@@ -59,13 +59,7 @@ Rest at_rest(Press& press, const Eigen::Matrix2d& deformation = Eigen::Matrix2d:
     state.x.segment<2>(3 * i) = x;
     scene.held[3 * i] = scene.held[3 * i + 1] = 1;
   }
-  for (std::size_t q = 0; q < scene.blank.quads.size(); ++q) {
-    const auto corners = corners_of(scene.blank.quads[q]);
-    for (std::size_t k = 0; k < 4; ++k)
-      state.corner_angle[4 * q + k] =
-          corner_angle(state.node(corners[k].along_warp) - state.node(corners[k].node),
-                       state.node(corners[k].along_weft) - state.node(corners[k].node));
-  }
+  state.corner_angle = corner_angles(scene.blank, state);
   const VectorXd laid = state.x;
   SolveOptions options;
   options.force_tolerance = 1e-5;  // of tows stretched by the distortion, rounding leaves 1e-6 N

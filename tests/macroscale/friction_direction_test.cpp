@@ -8,6 +8,7 @@
 
 #include "macroscale/friction_lag.h"
 #include "macroscale/scene.h"
+#include "macroscale/solve.h"
 #include "tests/macroscale/sample_fabric.h"
 
 using namespace heddle::macroscale;
@@ -44,13 +45,7 @@ FrictionPoints points_of(double gamma, const Vector3d& slip, double turn, double
   if (swapped) exchange.topLeftCorner<2, 2>() << 0, 1, 1, 0;
   for (int i = 0; i < scene.blank.nodes(); ++i)
     state.x.segment<3>(3 * i) = frame * shear * exchange * scene.blank.reference[i];
-  for (std::size_t q = 0; q < scene.blank.quads.size(); ++q) {
-    const auto corners = corners_of(scene.blank.quads[q]);
-    for (std::size_t k = 0; k < 4; ++k)
-      state.corner_angle[4 * q + k] =
-          corner_angle(state.node(corners[k].along_warp) - state.node(corners[k].node),
-                       state.node(corners[k].along_weft) - state.node(corners[k].node));
-  }
+  state.corner_angle = corner_angles(scene.blank, state);
   StepData step;
   step.dt = 0.01;
   step.start = &state;

@@ -1,0 +1,164 @@
+#include "pipeline/stamping_keys.h"
+
+#include "pipeline/key_table.h"
+
+namespace heddle::pipeline {
+namespace {
+
+constexpr auto required = Presence::required;
+constexpr auto defaulted = Presence::defaulted;
+constexpr auto optional = Presence::optional;
+
+}  // namespace
+
+// A table reads better in rows than one field a line.
+// clang-format off
+std::vector<Key> process_keys() {
+  const auto stamping = Stage::stamping;
+  return {
+      {.path = "process.punch.stroke", .type = KeyType::quantity, .unit = "mm", .presence = required,
+       .range = "(0 mm, 10000 mm)", .stage = stamping, .help = "Travel of the punch from first touch."},
+      {.path = "process.punch.time", .type = KeyType::quantity, .unit = "s", .presence = required, .range = "(0 s, )",
+       .stage = stamping, .help = "Of the stroke at speed_scale 1."},
+      {.path = "process.punch.speed_scale", .type = KeyType::quantity, .presence = defaulted, .default_text = "1",
+       .range = "(0, )", .stage = stamping, .help = "0.5: half the speed."},
+      {.path = "process.punch.slow_down", .type = KeyType::quantity, .unit = "s", .presence = defaulted,
+       .default_text = "0 s", .range = "[0 s, )", .stage = stamping,
+       .help = "The punch stops linearly over this last part; 0.01 s in the paper (section 3.2.2)."},
+      later("process.punch.file", "Punch displacement over time from a table."),
+      {.path = "process.steps", .type = KeyType::integer, .presence = defaulted, .default_text = "100",
+       .range = "[1, 1000000]", .stage = stamping, .help = "Equal in stroke; one that fails is halved."},
+      {.path = "process.binder_force", .type = KeyType::quantity, .unit = "N", .presence = required,
+       .range = "(0 N, )", .stage = stamping, .help = "Total force on the binder (paper: 650 to 3000 N)."},
+      {.path = "process.tool_temperature", .type = KeyType::quantity, .unit = "degC", .presence = required,
+       .range = "[-100 degC, 500 degC]", .stage = stamping, .help = "Of punch, die and binder."},
+      {.path = "process.blank_temperature", .type = KeyType::quantity, .unit = "degC", .presence = required,
+       .range = "[-100 degC, 500 degC]", .stage = stamping, .help = "Of the fabric."},
+      {.path = "process.hold", .type = KeyType::quantity, .unit = "s", .presence = defaulted, .default_text = "0 s",
+       .range = "[0 s, 36000 s]", .stage = stamping, .used_when = "thermal",
+       .help = "Longest time that the tools stay closed and still after the stroke; it ends when no melt is left."},
+  };
+}
+
+std::vector<Key> blank_keys() {
+  const auto stamping = Stage::stamping;
+  return {
+      {.path = "blank.shape", .type = KeyType::choice, .presence = defaulted, .default_text = "rectangle",
+       .choices = {"rectangle", "circle", "polygon", "drawing"}, .stage = stamping,
+       .help = "Outline of the blank; the grid follows the tows and is trimmed to it."},
+      {.path = "blank.size", .type = KeyType::pair, .unit = "mm", .presence = required, .range = "(0 mm, 100000 mm)",
+       .stage = stamping, .used_when = "blank.shape=rectangle", .help = "Along x and y, centred on the punch axis."},
+      {.path = "blank.radius", .type = KeyType::quantity, .unit = "mm", .presence = required,
+       .range = "(0 mm, 100000 mm)", .stage = stamping, .used_when = "blank.shape=circle",
+       .help = "Of a round blank about the punch axis."},
+      {.path = "blank.points", .type = KeyType::rows, .unit = "mm", .presence = required,
+       .range = "[-100000 mm, 100000 mm]", .columns = 2, .stage = stamping, .used_when = "blank.shape=polygon",
+       .help = "Corners [x, y] in order along the edge, at least three, for instance "
+               "[[-160 mm, -160 mm], [160 mm, -160 mm], [0 mm, 200 mm]]."},
+      {.path = "blank.drawing.file", .type = KeyType::file, .presence = required, .stage = stamping,
+       .used_when = "blank.shape=drawing",
+       .help = "DXF (text) or STEP with one plane face; the largest ring is the edge, all others are holes."},
+      {.path = "blank.drawing.length_unit", .type = KeyType::choice, .presence = required,
+       .choices = {"mm", "cm", "m", "in"}, .stage = stamping, .used_when = "blank.shape=drawing",
+       .help = "Of the drawing's numbers; a unit that the drawing states must be the same."},
+      {.path = "blank.drawing.chord_error", .type = KeyType::quantity, .unit = "mm", .presence = defaulted,
+       .default_text = "0.01 mm", .range = "(0 mm, 10 mm]", .stage = stamping, .used_when = "blank.shape=drawing",
+       .help = "Arcs become chords that stay this near to them."},
+      {.path = "blank.holes", .type = KeyType::rows, .unit = "mm", .presence = optional,
+       .range = "[-100000 mm, 100000 mm]", .columns = 3, .stage = stamping,
+       .help = "Round holes [x, y, radius], for instance [[0 mm, 120 mm, 8 mm]]."},
+      {.path = "blank.orientation", .type = KeyType::quantity, .unit = "deg", .presence = defaulted,
+       .default_text = "0 deg", .range = "[-180 deg, 180 deg]", .stage = stamping, .help = "Warp against x."},
+      {.path = "blank.spacing", .type = KeyType::quantity, .unit = "mm", .presence = required,
+       .range = "(0 mm, 1000 mm)", .stage = stamping,
+       .help = "Upper bound of the node spacing; the size is divided into whole cells."},
+      {.path = "blank.plies", .type = KeyType::integer, .presence = defaulted, .default_text = "1", .range = "[1, 1]",
+       .stage = stamping, .help = "This version forms one ply."},
+      {.path = "blank.grid_error", .type = KeyType::choice, .presence = defaulted, .default_text = "on",
+       .choices = {"on", "off"}, .stage = Stage::grid_error,
+       .help = "on: the case is run once more on twice the spacing, for the error that the grid leaves in force, "
+               "angle and draw-in; a sixth of the run's time."},
+  };
+}
+
+std::vector<Key> contact_keys() {
+  const auto stamping = Stage::stamping;
+  return {
+      {.path = "contact.points", .type = KeyType::choice, .presence = defaulted, .default_text = "nodes",
+       .choices = {"nodes", "gauss"}, .stage = stamping,
+       .help = "Where contact and friction are asked for: at the nodes with their tributary area, or at 2 x 2 Gauss points of each cell."},
+      {.path = "contact.compaction", .type = KeyType::choice, .presence = defaulted, .default_text = "flat",
+       .choices = {"flat", "sheared"}, .stage = stamping,
+       .help = "flat: every place is pressed as the fabric that is not sheared; sheared: the pressure over thickness follows the trellis angle, on the area of the sheared fabric."},
+  };
+}
+
+// A tool by its file instead of by its shape: a key is then used by the shape or by the file, never by both.
+namespace {
+
+std::vector<Key> tool_file_keys(const std::string& tool) {
+  const std::string block = "tools." + tool, with_file = block + ".file";
+  const auto stamping = Stage::stamping;
+  return {
+      {.path = with_file, .type = KeyType::file, .presence = optional, .stage = stamping,
+       .help = "STEP, STL or OBJ instead of a shape; z up, x and y as in the press, moved along z until it touches."},
+      {.path = block + ".length_unit", .type = KeyType::choice, .presence = required,
+       .choices = {"mm", "cm", "m", "in"}, .stage = stamping, .used_when = with_file,
+       .help = "Of the file's numbers; a STEP file states its own, which must be the same."},
+      {.path = block + ".mesh_size", .type = KeyType::quantity, .unit = "mm", .presence = defaulted,
+       .default_text = "2 mm", .range = "(0 mm, 1000 mm)", .stage = stamping, .used_when = with_file,
+       .help = "Largest edge on curved faces of a STEP file."},
+      {.path = block + ".chord_error", .type = KeyType::quantity, .unit = "mm", .presence = defaulted,
+       .default_text = "0.05 mm", .range = "(0 mm, 10 mm)", .stage = stamping, .used_when = with_file,
+       .help = "Triangles stay this near to the curved faces of a STEP file; edges follow the smallest radius of a face."},
+      {.path = block + ".voxel", .type = KeyType::quantity, .unit = "mm", .presence = defaulted,
+       .default_text = "1 mm", .range = "(0 mm, 100 mm)", .stage = stamping, .used_when = with_file,
+       .help = "Of the distance field; a twentieth of the radii that matter keeps its error small."},
+      {.path = block + ".sheet", .type = KeyType::choice, .presence = defaulted, .default_text = "off",
+       .choices = {"on", "off"}, .stage = stamping, .used_when = with_file,
+       .help = "on: a surface with a border instead of a solid; it must reach beyond whatever it is to meet."},
+      {.path = block + ".repair", .type = KeyType::choice, .presence = defaulted, .default_text = "off",
+       .choices = {"on", "off"}, .stage = stamping, .used_when = with_file,
+       .help = "on: merge equal vertices, drop triangles without area, turn those that face the wrong way."},
+  };
+}
+
+}  // namespace
+
+std::vector<Key> tool_keys() {
+  const auto stamping = Stage::stamping;
+  std::vector<Key> keys{
+      {.path = "tools.punch.shape", .type = KeyType::choice, .presence = required, .choices = {"hemisphere"}, .stage = stamping,
+       .used_when = "!tools.punch.file", .help = "Hemisphere with its apex down and a cylinder above."},
+      {.path = "tools.punch.radius", .type = KeyType::quantity, .unit = "mm", .presence = required,
+       .range = "(0 mm, 10000 mm)", .stage = stamping, .used_when = "!tools.punch.file", .help = "Of hemisphere and cylinder."},
+  };
+  append(keys, tool_file_keys("punch"));
+  append(keys, {
+      {.path = "tools.die.shape", .type = KeyType::choice, .presence = required, .choices = {"ring"}, .stage = stamping,
+       .used_when = "!tools.die.file", .help = "Plate with a round opening and a filleted edge."},
+      {.path = "tools.die.opening_radius", .type = KeyType::quantity, .unit = "mm", .presence = required,
+       .range = "(0 mm, 10000 mm)", .stage = stamping, .used_when = "!tools.die.file",
+       .help = "Radius of the opening below the fillet."},
+      {.path = "tools.die.fillet", .type = KeyType::quantity, .unit = "mm", .presence = required,
+       .range = "(0 mm, 10000 mm)", .stage = stamping, .used_when = "!tools.die.file", .help = "Radius of the rounded edge."},
+  });
+  append(keys, tool_file_keys("die"));
+  append(keys, {
+      {.path = "tools.binder.shape", .type = KeyType::choice, .presence = required, .choices = {"ring"}, .stage = stamping,
+       .used_when = "!tools.binder.file", .help = "Flat ring under force, free to move up and down."},
+      {.path = "tools.binder.inner_radius", .type = KeyType::quantity, .unit = "mm", .presence = required,
+       .range = "(0 mm, 10000 mm)", .stage = stamping, .used_when = "!tools.binder.file", .help = "Where the binder begins."},
+      {.path = "tools.binder.edge_fillet", .type = KeyType::quantity, .unit = "mm", .presence = defaulted,
+       .default_text = "2 mm", .range = "(0 mm, 1000 mm)", .stage = stamping,
+       .used_when = "!tools.binder.file",
+       .help = "Rounding of the inner edge; keeps contact smooth where fabric leaves it."},
+      {.path = "tools.binder.mass", .type = KeyType::quantity, .unit = "kg", .presence = required,
+       .range = "(0 kg, )", .stage = stamping, .help = "Of the moving binder."},
+  });
+  append(keys, tool_file_keys("binder"));
+  return keys;
+}
+// clang-format on
+
+}  // namespace heddle::pipeline
