@@ -122,13 +122,19 @@ struct MultifrontalFactor::Implementation {
 
   // A subtree done by one thread has its updates in one room, a parent's before its children's: what is
   // needed is a path's and its siblings'. Updates of branching supernodes and of those below them live by
-  // themselves, from their making until the parent has taken them.
+  // themselves, from their making until the parent has taken them; small ones are kept for the next
+  // factorisation, since new memory from the system costs more than what is done with it.
   void lay_out_updates() {
     update_start.assign(nodes.count(), 0);
     update.assign(nodes.count(), nullptr);
     own.resize(nodes.count());
-    for (int s = 0; s < nodes.count(); ++s)
-      if (!branches(s) && lives_by_itself(s)) room_size = std::max(room_size, lay_out_children(s, 0));
+    std::size_t own_size = 0;
+    for (int s = 0; s < nodes.count(); ++s) {
+      if (!lives_by_itself(s)) continue;
+      own_size += update_size(s);
+      if (!branches(s)) room_size = std::max(room_size, lay_out_children(s, 0));
+    }
+    kept = own_size * sizeof(double) < kept_limit;
   }
   bool lives_by_itself(int s) const { return parent[s] < 0 || branches(parent[s]); }
 
@@ -183,6 +189,7 @@ struct MultifrontalFactor::Implementation {
       return;
     }
     if (m > 0) make_update(s, panel);
+    if (kept) return;
     for (const int child : children[s]) own[child].reset();
   }
 
@@ -190,7 +197,7 @@ struct MultifrontalFactor::Implementation {
     const int n = columns(s), m = below(s), all = rows(s);
     const double one = 1.0, minus = -1.0, zero = 0.0;
     if (lives_by_itself(s)) {
-      own[s].reset(new double[update_size(s)]);
+      if (!own[s]) own[s].reset(new double[update_size(s)]);
       update[s] = own[s].get();
     }
     dtrsm_("R", "L", "T", "N", &m, &n, &one, panel, &all, panel + n, &all);
@@ -239,8 +246,10 @@ struct MultifrontalFactor::Implementation {
   std::vector<Entry> entries;
   std::vector<Run> runs;
   std::vector<std::size_t> update_start;
-  std::vector<double*> update;                 ///< of each supernode, while it lives
-  std::vector<std::unique_ptr<double[]>> own;  ///< of those that live by themselves
+  std::vector<double*> update;                           ///< of each supernode, while it lives
+  static constexpr std::size_t kept_limit = 256u << 20;  ///< of all own updates together [bytes]
+  bool kept = false;                                     ///< own updates live on
+  std::vector<std::unique_ptr<double[]>> own;            ///< of those that live by themselves
   std::size_t room_size = 0;
   std::vector<std::unique_ptr<double[]>> rooms;  ///< free
   std::mutex rooms_in_use;

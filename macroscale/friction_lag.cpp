@@ -2,8 +2,11 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 
+#include <tbb/blocked_range.h>
 #include <tbb/parallel_for.h>
+#include <tbb/parallel_reduce.h>
 #include <Eigen/Geometry>
 
 #include "friction/hersey.h"
@@ -88,47 +91,57 @@ std::vector<double> nodal_pressure(const System& system, const StepData& step, i
 LagChange lag_change(const System& system, const StepData& step, const VectorXd& x,
                      const FrictionPoints& before, const FrictionPoints& after) {
   const FrictionSettings settings = system.friction_settings();
-  LagChange total;
-  double change = 0.0, sum = 0.0;
-  for (int k = 0; k < static_cast<int>(after.size()); ++k)
-    for (int i = 0; i < static_cast<int>(after[k].size()); ++i) {
-      if (after[k][i].load == 0.0 && before[k][i].load == 0.0) continue;
-      const Vector3d v = system.relative_velocity(step, x, k, i);
-      const auto force = [&](const FrictionPoint& p) -> Vector3d {
-        return p.load > 0.0 ? friction_force(settings, p, v) : Vector3d::Zero();
-      };
-      const Vector3d now = force(after[k][i]);
-      const double moved = (now - force(before[k][i])).norm();
-      total.largest = std::max(total.largest, moved);
-      change += moved;
-      sum += now.norm();
+  struct Sums {
+    double change = 0.0, size = 0.0, largest = 0.0;
+    Sums operator+(const Sums& b) const {
+      return {change + b.change, size + b.size, std::max(largest, b.largest)};
     }
-  total.relative = sum > 0.0 ? change / sum : (change > 0.0 ? 1.0 : 0.0);
-  return total;
+  };
+  const auto of_point = [&](int k, int i) {
+    const FrictionPoint &old = before[k][i], &now = after[k][i];
+    if (old.load == 0.0 && now.load == 0.0) return Sums{};
+    const Vector3d v = system.relative_velocity(step, x, k, i);
+    const auto force = [&](const FrictionPoint& p) -> Vector3d {
+      return p.load > 0.0 ? friction_force(settings, p, v) : Vector3d::Zero();
+    };
+    const Vector3d reached = force(now);
+    const double moved = (reached - force(old)).norm();
+    return Sums{moved, reached.norm(), moved};
+  };
+  Sums all;
+  for (int k = 0; k < static_cast<int>(after.size()); ++k)
+    all = all + tbb::parallel_deterministic_reduce(
+                    tbb::blocked_range<int>(0, static_cast<int>(after[k].size()), 512), Sums{},
+                    [&](const tbb::blocked_range<int>& range, Sums sum) {
+                      for (int i = range.begin(); i != range.end(); ++i) sum = sum + of_point(k, i);
+                      return sum;
+                    },
+                    std::plus<>());
+  const double relative = all.size > 0.0 ? all.change / all.size : (all.change > 0.0 ? 1.0 : 0.0);
+  return {relative, all.largest};
 }
 
 FrictionPoints blend(const System& system, const StepData& step, const FrictionPoints& before,
-                     const FrictionPoints& after, double share, const std::vector<double>& shear_angle) {
+                     FrictionPoints after, double share, const std::vector<double>& shear_angle) {
   const Scene& scene = system.scene();
-  FrictionPoints points = after;
-  for (std::size_t k = 0; k < points.size(); ++k)
-    for (std::size_t i = 0; i < points[k].size(); ++i) {
-      const FrictionPoint &old = before[k][i], &now = after[k][i];
-      const double kept = (1.0 - share) * old.load, added = share * now.load;
-      if (kept + added == 0.0) continue;
-      FrictionPoint& point = points[k][i];
-      if (now.load == 0.0) point = old;
+  for (std::size_t k = 0; k < after.size(); ++k)
+    tbb::parallel_for(0, static_cast<int>(after[k].size()), [&, k](int i) {
+      const FrictionPoint& old = before[k][i];
+      FrictionPoint& point = after[k][i];
+      const double kept = (1.0 - share) * old.load, added = share * point.load;
+      if (kept + added == 0.0) return;
+      const Vector3d normal = (kept * old.normal + added * point.normal).normalized();
+      if (point.load == 0.0) point = old;
       point.load = kept + added;
-      point.normal = (kept * old.normal + added * now.normal).normalized();
+      point.normal = normal;
       const friction::Context last = point.context;
-      point.context =
-          context_of(scene, point.load / system.contact_area(step, static_cast<int>(i)), shear_angle[i]);
+      point.context = context_of(scene, point.load / system.contact_area(step, i), shear_angle[i]);
       point.context.fabric_temperature = last.fabric_temperature;
       point.context.tool_temperature = last.tool_temperature;
       point.context.time_step = last.time_step;
       point.context.slip_angle = last.slip_angle;
-    }
-  return points;
+    });
+  return after;
 }
 
 }  // namespace heddle::macroscale

@@ -33,6 +33,6 @@ LagChange lag_change(const System& system, const StepData& step, const Eigen::Ve
 /// A share of the way from one frozen set to another. Where loads and friction drive each other to and fro (a
 /// node that friction tilts off its tool loses the load that made the friction), the half-way set settles.
 FrictionPoints blend(const System& system, const StepData& step, const FrictionPoints& before,
-                     const FrictionPoints& after, double share, const std::vector<double>& shear_angle);
+                     FrictionPoints after, double share, const std::vector<double>& shear_angle);
 
 }  // namespace heddle::macroscale

@@ -39,7 +39,7 @@ std::string node_beyond_tools(const System& system, const Position& position) {
   const Scene& scene = system.scene();
   for (int k = 0; k < static_cast<int>(scene.tools.size()); ++k)
     for (int i = 0; i < system.contacts(); ++i) {
-      if (std::isfinite(position.contacts[k][i].surface.distance)) continue;
+      if (std::isfinite(position.contacts[k][i].distance)) continue;
       const Vector3d at = 1e3 * at_point(system.contact_points()[i], position.x);
       return fmt::format(
           "{} at ({:.3g}, {:.3g}, {:.3g}) mm is deeper in the {} or further off it than its distances "

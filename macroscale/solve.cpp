@@ -215,8 +215,8 @@ StepSummary advance(System& system, const State& state, double dt, const std::ve
       if (summary.swings) break;
       share = std::max(0.5 * share, least_share);
     }
-    step.friction =
-        share == 1.0 ? std::move(next) : blend(system, step, step.friction, next, share, shear_angle);
+    step.friction = share == 1.0 ? std::move(next)
+                                 : blend(system, step, step.friction, std::move(next), share, shear_angle);
   }
   if (summary.lag_residual > options.lag_limit && change.largest > tolerance && !summary.swings) {
     summary.reason = fmt::format("friction loads still move by {:.1f} % after {} updates",

@@ -292,6 +292,8 @@ class Run {
 
   void close_row() {
     now_.blank = blank_state(system_, now_.state, &last_step_);
+    last_step_ = {};  // hundreds of bytes a node that nothing reads any more
+    start_ = {};
     finish_row(now_.row, now_.blank, now_.state, scene_);
     now_.history.push_back(now_.row);
   }
@@ -389,7 +391,7 @@ class Run {
   StampingCheckpoint now_;    ///< moves on with every part of a step
   StampingCheckpoint whole_;  ///< after the last whole step; empty until the binder has closed
   State start_;               ///< of last_step_
-  StepData last_step_;        ///< the last part that was accepted
+  StepData last_step_;        ///< the last part that was accepted, until its step has its row
   StepData attempt_;          ///< the last one tried
   std::string reason_;
   FailureKind kind_ = FailureKind::search;

@@ -157,7 +157,8 @@ void System::evaluate(const StepData& step, const VectorXd& x, Position& at) con
     at.contacts[k].resize(contacts());
     if (rubs) at.friction[k].resize(contacts());
     for_each(contacts(), [&, k](int i) {
-      at.contacts[k][i] = tool_contact(step, x, k, i);
+      const ToolContact contact = tool_contact(step, x, k, i);
+      at.contacts[k][i] = {contact.surface.distance, contact.surface.normal, contact.normal};
       if (rubs && step.friction[k][i].load > 0.0)
         at.friction[k][i] =
             friction_response(settings, step.friction[k][i], relative_velocity(step, x, k, i));
@@ -240,8 +241,8 @@ double System::friction_difference(const StepData& step, const Position& from, c
 }
 
 Vector3d System::contact_force(const StepData& step, const Position& at, int k, int i) const {
-  const auto& [d, contact] = at.contacts[k][i];
-  Vector3d force = -contact_area(step, i) * contact.pressure * d.normal;
+  const KeptContact& contact = at.contacts[k][i];
+  Vector3d force = -contact_area(step, i) * contact.normal.pressure * contact.direction;
   if (!at.friction.empty() && step.friction[k][i].load > 0.0)
     force += friction_force(step.friction[k][i], at.friction[k][i]);
   return force;

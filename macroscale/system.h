@@ -2,6 +2,7 @@
 
 #include <array>
 #include <memory>
+#include <span>
 #include <vector>
 
 #include <Eigen/Core>
@@ -35,11 +36,19 @@ struct ToolContact {
   NormalContact normal;
 };
 
+/// The same as a position keeps it, for every point and tool: without the curvature, which only those that
+/// touch need, and only for a Hessian.
+struct KeptContact {
+  double distance = 0.0;                     ///< [m]
+  Eigen::Vector3d direction{0.0, 0.0, 1.0};  ///< normal of the tool
+  NormalContact normal;
+};
+
 /// A position with each law looked up there once: energy, forces and stiffness share it.
 struct Position {
   Eigen::VectorXd x;                                    ///< [m]
   std::vector<CornerPoint> corners;                     ///< 4 a quad
-  std::vector<std::vector<ToolContact>> contacts;       ///< per tool, per contact point
+  std::vector<std::vector<KeptContact>> contacts;       ///< per tool, per contact point
   std::vector<std::vector<FrictionResponse>> friction;  ///< the same; empty without friction
 };
 
@@ -135,8 +144,18 @@ class System {
   Eigen::Vector3d contact_force(const StepData& step, const Position& at, int k, int i) const;
   Eigen::Matrix3d contact_stiffness(const StepData& step, const Position& at, int k, int i,
                                     Filter filter) const;
-  void write_matrix(double shift);
+  /// Where a block's first value stands in the matrix, and how many its first column has.
+  struct BlockPlace {
+    int first, column_length;
+    bool diagonal;  ///< then the lower triangle is there
+  };
+  void begin_matrix(const StepData& step);
+  void finish_matrix(double shift);
   int block(int row_node, int column_node) const;
+  /// Where row 0 of each column of a block would stand: row r is r behind it.
+  std::array<double*, 3> columns_of(const BlockPlace& place) const;
+  /// Adds a 3 x 3 block (rows of the larger node) to the matrix; of a diagonal one the lower triangle.
+  void add_block(int block, const Eigen::Matrix3d& part);
 
   const Scene& scene_;
   int size_ = 0;
@@ -145,10 +164,10 @@ class System {
   std::vector<double> mass_;  ///< per unknown [kg]
   std::vector<int> body_;     ///< per tool: its unknown, or -1
 
-  // Blocks of the lower triangle by node columns: rows >= column, 3 x 3 each, column-major.
+  // Blocks of the lower triangle by node columns: rows >= column, 3 x 3 each.
   std::vector<int> block_start_, block_row_;
+  std::vector<BlockPlace> block_place_;
   std::vector<double> constant_;  ///< bending and twist: a multiple of the unit matrix in each block
-  std::vector<double> blocks_;
   std::vector<std::vector<double>> body_row_;  ///< coupling of each loaded tool with every node unknown
   std::vector<double> body_diagonal_;
   struct CornerSlots {
@@ -161,6 +180,7 @@ class System {
   std::array<std::vector<int>, 4>
       colours_;  ///< quads that share no node, assembled in parallel without locks
   std::unique_ptr<SparseSolver> solver_;
+  std::span<double> values_;  ///< of its matrix
   SearchRoom room_;
 };
 

@@ -48,7 +48,6 @@ void System::build_pattern() {
     block_row_.insert(block_row_.end(), column.begin(), column.end());
     block_start_.push_back(static_cast<int>(block_row_.size()));
   }
-  blocks_.assign(9 * block_row_.size(), 0.0);
   body_row_.assign(scene_.loaded_tools(), std::vector<double>(3 * nodes, 0.0));
   body_diagonal_.assign(scene_.loaded_tools(), 0.0);
 
@@ -95,6 +94,30 @@ void System::build_pattern() {
     pattern.column_start.push_back(static_cast<int>(pattern.row.size()));
   }
   solver_ = std::make_unique<SparseSolver>(std::move(pattern));
+  values_ = solver_->values();
+  const auto& start = solver_->pattern().column_start;
+  for (int j = 0; j < nodes; ++j)
+    for (int k = block_start_[j]; k < block_start_[j + 1]; ++k)
+      block_place_.push_back(
+          {start[3 * j] + 3 * (k - block_start_[j]), start[3 * j + 1] - start[3 * j], k == block_start_[j]});
+}
+
+// Columns of a node begin at their diagonals: the second has one value less than the first, the third two. So
+// row r of column c of a block stands r behind {0, length - 1, 2 length - 3}.
+inline std::array<double*, 3> System::columns_of(const BlockPlace& place) const {
+  double* first = &values_[place.first];
+  return {first, first + place.column_length - 1, first + 2 * place.column_length - 3};
+}
+
+inline void System::add_block(int block, const Matrix3d& part) {
+  const BlockPlace& place = block_place_[block];
+  const std::array<double*, 3> column = columns_of(place);
+  if (!place.diagonal) {
+    for (int c = 0; c < 3; ++c) Eigen::Map<Eigen::Vector3d>(column[c]) += part.col(c);
+    return;
+  }
+  for (int c = 0; c < 3; ++c)
+    for (int r = c; r < 3; ++r) column[c][r] += part(r, c);
 }
 
 void System::assemble_constant() {
@@ -136,11 +159,10 @@ void System::add_corners(const StepData& step, const Position& at, Filter filter
                                               h.ab};
         const CornerSlots& slots = corner_slots_[4 * q + k];
         for (std::size_t p = 0; p < part.size(); ++p) {
-          Eigen::Map<Matrix3d> target(&blocks_[9 * slots.slot[p]]);
           if (slots.flipped[p])
-            target += part[p].transpose();
+            add_block(slots.slot[p], part[p].transpose());
           else
-            target += part[p];
+            add_block(slots.slot[p], part[p]);
         }
       }
     });
@@ -148,11 +170,12 @@ void System::add_corners(const StepData& step, const Position& at, Filter filter
 
 Matrix3d System::contact_stiffness(const StepData& step, const Position& at, int k, int i,
                                    Filter filter) const {
-  const auto& [d, contact] = at.contacts[k][i];
+  const auto& [distance, direction, contact] = at.contacts[k][i];
   const double area = contact_area(step, i);
-  Matrix3d stiffness = area * contact.stiffness * d.normal * d.normal.transpose();
+  Matrix3d stiffness = area * contact.stiffness * direction * direction.transpose();
   // Pressing against a convex tool, the point would rather slide off: negative, so dropped when filtering.
-  if (filter == Filter::none) stiffness -= area * contact.pressure * d.curvature;
+  if (filter == Filter::none && contact.pressure > 0.0)
+    stiffness -= area * contact.pressure * tool_contact(step, at.x, k, i).surface.curvature;
   const FrictionTangent tangent = filter == Filter::none       ? FrictionTangent::exact
                                   : filter == Filter::positive ? FrictionTangent::convex
                                                                : FrictionTangent::secant;
@@ -170,7 +193,7 @@ void System::add_contact(const StepData& step, const Position& at, Filter filter
     std::vector<double>* row = loaded ? &body_row_[body] : nullptr;
     for_each(blank.nodes(), [&, k](int i) {
       const Matrix3d stiffness = contact_stiffness(step, at, k, i, filter);
-      Eigen::Map<Matrix3d>(&blocks_[9 * block_start_[i]]) += stiffness;
+      add_block(block_start_[i], stiffness);
       if (loaded)
         for (int c = 0; c < 3; ++c) (*row)[3 * i + c] = -stiffness(2, c);
     });
@@ -196,7 +219,7 @@ void System::add_contact_in_cells(const StepData& step, const Position& at, Filt
           auto slot = cell_slots_[q].begin();
           for (std::size_t a = 0; a < 4; ++a) {
             for (std::size_t b = 0; b <= a; ++b)
-              Eigen::Map<Matrix3d>(&blocks_[9 * *slot++]) += point.weight[a] * point.weight[b] * stiffness;
+              add_block(*slot++, point.weight[a] * point.weight[b] * stiffness);
             if (loaded)
               for (int c = 0; c < 3; ++c)
                 body_row_[body][3 * point.node[a] + c] -= point.weight[a] * stiffness(2, c);
@@ -214,54 +237,48 @@ void System::close_body_row(const StepData& step, int k, int body) {
   body_diagonal_[body] = diagonal;
 }
 
-void System::assemble(const StepData& step, const Position& at, Filter filter, double shift) {
+// Inertia, stabilisation, bending and twist: multiples of the unit matrix in each block.
+void System::begin_matrix(const StepData& step) {
   const double inverse_dt2 = 1.0 / (step.dt * step.dt);
-  for_each(scene_.blank.nodes(), [&](int i) {
+  const auto& start = solver_->pattern().column_start;
+  for_each(scene_.blank.nodes(), [&](int j) {
+    std::fill(values_.begin() + start[3 * j], values_.begin() + start[3 * j + 3], 0.0);
     const double diagonal =
-        mass_[3 * i] * inverse_dt2 + scene_.stabilisation * scene_.blank.node_area[i] / step.dt;
-    for (int k = block_start_[i]; k < block_start_[i + 1]; ++k) {
-      const double alike = k == block_start_[i] ? constant_[k] + diagonal : constant_[k];
-      Eigen::Map<Matrix3d> target(&blocks_[9 * k]);
-      target = alike * Matrix3d::Identity();
-    }
+        mass_[3 * j] * inverse_dt2 + scene_.stabilisation * scene_.blank.node_area[j] / step.dt;
+    for (int k = block_start_[j]; k < block_start_[j + 1]; ++k)
+      add_block(k,
+                (block_place_[k].diagonal ? constant_[k] + diagonal : constant_[k]) * Matrix3d::Identity());
   });
-  add_corners(step, at, filter);
-  add_contact(step, at, filter);
-  write_matrix(shift);
 }
 
-void System::write_matrix(double shift) {
+// The rows of loaded tools at the foot of each column, the shift, identity rows and columns of held unknowns.
+void System::finish_matrix(double shift) {
   const int nodes = scene_.blank.nodes(), bodies = scene_.loaded_tools();
-  auto values = solver_->values();
   const auto& start = solver_->pattern().column_start;
+  const auto& row = solver_->pattern().row;
   const bool some_held = !scene_.held.empty();
-  const auto held = [&](int unknown) { return some_held && scene_.held[unknown]; };
-  for_each(nodes, [&](int j) {
-    for (int c = 0; c < 3; ++c) {
-      int target = start[3 * j + c];
-      const bool column_held = held(3 * j + c);
-      for (int k = block_start_[j]; k < block_start_[j + 1]; ++k) {
-        const double* source = &blocks_[9 * k + 3 * c];
-        const bool diagonal_block = k == block_start_[j];
-        for (int r = diagonal_block ? c : 0; r < 3; ++r, ++target) {
-          const bool on_diagonal = diagonal_block && r == c;
-          if (column_held || held(3 * block_row_[k] + r))
-            values[target] = on_diagonal ? 1.0 : 0.0;
-          else
-            values[target] = source[r] + (on_diagonal ? shift : 0.0);
-        }
-      }
-      for (int b = 0; b < bodies; ++b, ++target) values[target] = column_held ? 0.0 : body_row_[b][3 * j + c];
-    }
+  for_each(3 * nodes, [&](int j) {
+    for (int b = 0; b < bodies; ++b) values_[start[j + 1] - bodies + b] = body_row_[b][j];
+    values_[start[j]] += shift;
+    if (!some_held) return;
+    for (int k = start[j]; k < start[j + 1]; ++k)
+      if (scene_.held[j] || (row[k] < 3 * nodes && scene_.held[row[k]]))
+        values_[k] = k == start[j] ? 1.0 : 0.0;
   });
-  for (int b = 0; b < bodies; ++b) values[start[3 * nodes + b]] = body_diagonal_[b] + shift;
+  for (int b = 0; b < bodies; ++b) values_[start[3 * nodes + b]] = body_diagonal_[b] + shift;
+}
+
+void System::assemble(const StepData& step, const Position& at, Filter filter, double shift) {
+  begin_matrix(step);
+  add_corners(step, at, filter);
+  add_contact(step, at, filter);
+  finish_matrix(shift);
 }
 
 double System::largest_diagonal() const {
   const auto& pattern = solver_->pattern();
-  const auto values = solver_->values();
   double largest = 0.0;
-  for (int j = 0; j < pattern.size; ++j) largest = std::max(largest, values[pattern.column_start[j]]);
+  for (int j = 0; j < pattern.size; ++j) largest = std::max(largest, values_[pattern.column_start[j]]);
   return largest;
 }
 
