@@ -53,9 +53,16 @@ friction::Model table4_law() {
   return model;
 }
 
+// Conjugate gradients on the matrix in hand with the factor of another one: how many iterations, how long.
+struct Stale {
+  int iterations = 0;
+  Time time;
+};
+
 // The pieces of one Newton iteration [s], and CHOLMOD's factorisation and solution of the same matrix.
 struct Pieces {
   Time assemble, factorise, solve, gradient, energy, bare_factorise, bare_solve;
+  std::vector<Stale> stale;  ///< matrix of the end of a step, factors of a tenth before and of its start
 };
 
 double sum(const Pieces& p, double Time::*clock) {
@@ -63,6 +70,48 @@ double sum(const Pieces& p, double Time::*clock) {
 }
 double bare(const Pieces& p, double Time::*clock) {
   return p.bare_factorise.*clock + p.bare_solve.*clock;
+}
+
+// A x from the lower triangle.
+Eigen::VectorXd times(SparseSolver& solver, const Eigen::VectorXd& x) {
+  const SymmetricPattern& pattern = solver.pattern();
+  const auto values = solver.values();
+  Eigen::VectorXd y = Eigen::VectorXd::Zero(x.size());
+  for (int j = 0; j < pattern.size; ++j) {
+    int k = pattern.column_start[j];
+    double sum = values[k] * x[j];  // the diagonal comes first
+    for (++k; k < pattern.column_start[j + 1]; ++k) {
+      sum += values[k] * x[pattern.row[k]];
+      y[pattern.row[k]] += values[k] * x[j];
+    }
+    y[j] += sum;
+  }
+  return y;
+}
+
+Stale conjugate_gradients(SparseSolver& solver, const Eigen::VectorXd& right, double reduction) {
+  constexpr int most = 200;
+  Stale stale;
+  stale.time = time_of([&] {
+    const auto precondition = [&](Eigen::VectorXd r) {
+      solver.solve({r.data(), static_cast<std::size_t>(r.size())});
+      return r;
+    };
+    Eigen::VectorXd x = Eigen::VectorXd::Zero(right.size()), r = right, z = precondition(r), p = z;
+    double rz = r.dot(z);
+    while (stale.iterations < most && r.norm() > reduction * right.norm()) {
+      ++stale.iterations;
+      const Eigen::VectorXd ap = times(solver, p);
+      const double alpha = rz / p.dot(ap);
+      x += alpha * p;
+      r -= alpha * ap;
+      z = precondition(r);
+      const double next = r.dot(z);
+      p = z + next / rz * p;
+      rz = next;
+    }
+  });
+  return stale;
 }
 
 // One more step from a checkpoint, and each piece by itself on the system it leaves.
@@ -108,6 +157,16 @@ Pieces pieces_at(const StampingSpec& spec, const mesoscale::FabricProperties& fa
     energy += system.potential(step, at).total() + system.friction_difference(step, before, at);
   });
   if (!std::isfinite(energy)) fmt::print("the energy is not finite\n");
+  // The factor of a tenth of the step back, as if of the Newton iteration before, and of the step's start.
+  for (const double back : {0.1, 1.0}) {
+    Position there;
+    system.evaluate(step, step.iterate + back * (checkpoint.state.x - step.iterate), there);
+    system.assemble(step, there, Filter::positive);
+    if (!system.solver().factorise()) continue;
+    right = system.gradient(step, there);
+    system.assemble(step, at, Filter::positive);
+    p.stale.push_back(conjugate_gradients(system.solver(), right, 1e-3));
+  }
   return p;
 }
 
@@ -210,6 +269,12 @@ Outcome measure(const Task& task, const mesoscale::FabricProperties& fabric, con
       p.factorise.wall / p.bare_factorise.wall, 1e3 * p.solve.cpu, 1e3 * sum(p, cpu),
       sum(p, cpu) / bare(p, cpu), sum(p, wall) / bare(p, wall), threads, 1e3 * run, run / bare(p, cpu),
       p.assemble.cpu / ours, p.gradient.cpu / ours, p.energy.cpu / ours, others / ours);
+  for (const Stale& stale : p.stale)
+    fmt::print(
+        "  conjugate gradients to 1e-3 on the factor of {} the step back: {} iterations{}, {:.2f} x "
+        "factorise + solve\n",
+        &stale == &p.stale.front() ? "a tenth of" : "all", stale.iterations,
+        stale.iterations == 200 ? " (and stopped)" : "", stale.time.cpu / (p.factorise.cpu + p.solve.cpu));
   print_goal(s.nodes, task, whole);
   const std::string row = fmt::format(
       "{},{},{},{},{},{},{},{:.1f},{:.1f},{:.2f},{:.2f},{:.2f},{:.2f},{:.2f},{:.3f},{:.3f},{:.3f},{:.3f},{:."

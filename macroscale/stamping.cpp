@@ -135,7 +135,7 @@ void describe_iterate(StampingFailure& failure, const System& system, const Step
 // What a checkpoint says of the run, as its result.
 void take_over(StampingResult& result, const Blank& blank, const mesoscale::FabricProperties& fabric,
                StampingCheckpoint at) {
-  const double last_table_pressure = fabric.compaction.curves().front().y().back();
+  const double last_table_pressure = fabric.compaction.curves().front().y().back();  // of every trellis angle
   StampingSummary& s = result.summary;
   s.nodes = blank.nodes();
   s.spacing = blank.spacing;
