@@ -17,6 +17,18 @@ Profile profile_of(const ProcessSpec& process) {
   return {duration, stop, process.stroke / (duration - 0.5 * stop)};
 }
 
+// Where a rising curve reaches y, by halving down to neighbouring numbers.
+double time_on(const Curve& profile, double y) {
+  double low = profile.x().front(), high = profile.x().back();
+  if (y <= profile.y().front()) return low;
+  if (y >= profile.y().back()) return high;
+  for (;;) {
+    const double middle = 0.5 * (low + high);
+    if (!(middle > low && middle < high)) return high;
+    (profile(middle) < y ? low : high) = middle;
+  }
+}
+
 }  // namespace
 
 double stroke_time(const ProcessSpec& process) {
@@ -29,6 +41,7 @@ double mean_speed(const ProcessSpec& process) {
 
 double stroke_at_time(const ProcessSpec& process, double time) {
   const Profile p = profile_of(process);
+  if (process.profile) return (*process.profile)(std::clamp(time, 0.0, p.duration) * process.speed_scale);
   const double t = std::clamp(time, 0.0, p.duration), left = p.duration - t;
   if (left >= p.stop) return p.plateau * t;
   return process.stroke - 0.5 * p.plateau * left * left / p.stop;
@@ -36,6 +49,7 @@ double stroke_at_time(const ProcessSpec& process, double time) {
 
 double time_at_stroke(const ProcessSpec& process, double travel) {
   const Profile p = profile_of(process);
+  if (process.profile) return time_on(*process.profile, travel) / process.speed_scale;
   const double left = process.stroke - travel;
   if (left <= 0.0) return p.duration;
   if (left >= 0.5 * p.plateau * p.stop) return travel / p.plateau;

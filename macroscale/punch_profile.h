@@ -5,8 +5,8 @@
 namespace heddle::macroscale {
 
 /// Punch motion: constant speed, then, if asked for, a linear stop over the last part (paper, section 3.2.2:
-/// "relatively constant" and slowing "only in the final 0.01 s"). speed_scale squeezes the whole profile in
-/// time.
+/// "relatively constant" and slowing "only in the final 0.01 s"); or a table (macroscale/punch_table.h).
+/// speed_scale squeezes the whole profile in time.
 
 /// Duration of the stroke [s].
 double stroke_time(const ProcessSpec& process);

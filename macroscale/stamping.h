@@ -9,6 +9,7 @@
 #include <utility>
 #include <vector>
 
+#include "core/curve.h"
 #include "core/problem.h"
 #include "friction/model.h"
 #include "macroscale/cell_piece.h"
@@ -68,6 +69,9 @@ struct BinderSpec {             ///< flat ring under force, free to move in z
 struct ProcessSpec {
   double stroke = 0.070;  ///< [m]
   double time = 0.43;     ///< of the stroke at speed_scale 1 [s]
+  /// Travel [m] over time [s] at speed_scale 1, rising from (0, 0) to (time, stroke); absent: constant speed
+  /// with slow_down at the end.
+  std::optional<Curve> profile;
   double slow_down =
       0.0;  ///< the punch stops linearly over this last part [s]; 0.01 in the paper (section 3.2.2)
   double speed_scale = 1.0;     ///< 0.5 = half speed [-]

@@ -75,6 +75,7 @@ Draft draft_of(const std::string& text, const std::string& file, const std::file
   draft.config = read_config(text, file, folder, assignments);
   draft.a_case = case_of(draft.config, folder);
   Problems between = read_drawing(draft.a_case, folder);
+  append(between, read_punch_motion(draft.a_case, folder));
   append(between, check_between_keys(draft.a_case, draft.config));
   locate(between, draft.config);
   append(draft.config.problems, std::move(between));
@@ -115,10 +116,17 @@ Problems tool_problems(Case& a_case) {
 
 /// Whether the tools' files can be read and measured: the blank gives their scale, the stroke their way.
 bool tools_can_be_looked_at(const Draft& draft) {
-  const std::vector<std::string> looked_at{"tools", "blank", "process.punch.stroke", "process.steps",
+  const std::vector<std::string> looked_at{"tools",
+                                           "blank",
+                                           "process.punch.stroke",
+                                           "process.punch.file",
+                                           "process.steps",
                                            "weave.fabric_thickness"};
   std::set<std::string> wrong = draft.config.failed;
-  for (const Problem& problem : draft.config.problems) wrong.insert(problem.key);
+  for (const Problem& problem : draft.config.problems) {
+    wrong.insert(problem.key);
+    wrong.insert(problem.id);  // a table's problems have its columns for keys
+  }
   return !any_below(wrong, looked_at);
 }
 

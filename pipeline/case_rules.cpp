@@ -246,6 +246,10 @@ Problems check_between_keys(const Case& a_case, const ReadConfig& config) {
     if (a_case.settings.is("blank.shape", "drawing"))  // its corners are those of the drawing
       for (Problem& problem : of_stamping)
         if (problem.key == "blank.points") problem.key = "blank.drawing.file";
+    if (a_case.stamping->process.profile)  // its end is the stroke
+      for (Problem& problem : of_stamping)
+        if (problem.key == "process.punch.stroke" || problem.key == "process.punch.time")
+          problem.key = "process.punch.file";
     append(problems, std::move(of_stamping));
   }
   if (a_case.orientation_study) {

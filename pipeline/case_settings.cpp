@@ -4,6 +4,7 @@
 
 #include "core/units.h"
 #include "macroscale/outline_file.h"
+#include "macroscale/punch_table.h"
 #include "pipeline/friction_keys.h"
 #include "pipeline/solid_keys.h"
 #include "pipeline/thermal_keys.h"
@@ -346,6 +347,23 @@ Case case_of(const ReadConfig& config, const std::filesystem::path& folder) {
   result.notes = config.notes;
   result.settings = settings;
   return result;
+}
+
+Problems read_punch_motion(Case& a_case, const std::filesystem::path& folder) {
+  const std::string key = "process.punch.file";
+  if (!a_case.stamping || !a_case.settings.has(key)) return {};
+  macroscale::ProcessSpec& process = a_case.stamping->process;
+  process.slow_down = 0.0;
+  try {
+    process.profile = macroscale::read_punch_table(folder / a_case.settings.text(key));
+    process.time = process.profile->x().back();
+    process.stroke = process.profile->y().back();
+  } catch (const InputError& error) {
+    process.time = 1.0;  // rules of a motion that is not there would blame it
+    process.stroke = 1e-3;
+    return error.problems();
+  }
+  return {};
 }
 
 Problems read_drawing(Case& a_case, const std::filesystem::path& folder) {

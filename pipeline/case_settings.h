@@ -11,6 +11,9 @@ namespace heddle::pipeline {
 /// @param folder  against which file keys are resolved
 Case case_of(const ReadConfig& config, const std::filesystem::path& folder);
 
+/// Reads the table of the punch's motion, if there is one, into stroke, time and profile.
+/// @return the problems of the table
+Problems read_punch_motion(Case& a_case, const std::filesystem::path& folder);
 /// Reads the drawing of a blank, if it is one, into its polygon.
 /// @return the problems of the drawing
 Problems read_drawing(Case& a_case, const std::filesystem::path& folder);

@@ -1,11 +1,14 @@
 #include <catch2/catch.hpp>
 
 #include <cmath>
+#include <filesystem>
 
 #include "macroscale/punch_profile.h"
+#include "macroscale/punch_table.h"
 #include "macroscale/quality.h"
 #include "macroscale/stamping.h"
 #include "tests/macroscale/sample_fabric.h"
+#include "tests/source_dir.h"
 
 using namespace heddle::macroscale;
 using heddle::test::make_fabric;
@@ -155,6 +158,26 @@ TEST_CASE("punch travel and time are inverse to each other and end at the stroke
   for (double share : {0.0, 0.3, 0.98, 0.995, 1.0})
     CHECK(stroke_at_time(process, time_at_stroke(process, share * process.stroke)) ==
           Approx(share * process.stroke).margin(1e-12));
+}
+
+TEST_CASE("a table of the punch's motion is followed row by row and turned round to the last bit",
+          "[macroscale][stamping]") {
+  ProcessSpec process;  // the paper's profile from its formula, and from its table
+  process.slow_down = 0.01;
+  ProcessSpec table = process;
+  table.profile =
+      read_punch_table(std::filesystem::path(heddle::test::source_dir) / "configs/data/punch_motion.csv");
+  table.speed_scale = process.speed_scale = GENERATE(1.0, 2.0);
+  CHECK(table.profile->x().back() == process.time);
+  CHECK(table.profile->y().back() == Approx(process.stroke).epsilon(1e-14));
+  for (double t = 0.0; t <= 0.43; t += 0.0043) {
+    INFO("t = " << t << " s");
+    CHECK(stroke_at_time(table, t) == Approx(stroke_at_time(process, t)).margin(2e-6));
+  }
+  for (double share : {0.0, 1e-6, 0.3, 0.98, 0.995, 1.0}) {
+    const double travel = share * process.stroke;
+    CHECK(std::abs(stroke_at_time(table, time_at_stroke(table, travel)) - travel) <= 4e-17);
+  }
 }
 
 TEST_CASE("a stamping that cannot work is refused with every reason at once", "[macroscale][stamping]") {
