@@ -215,7 +215,7 @@ double ledger_residual(const HistoryRow& r) {
   const double stored = r.energy_tow + r.energy_shear + r.energy_bending + r.energy_twist +
                         r.energy_compaction + r.energy_kinetic;
   const double dissipated = r.friction_punch + r.friction_die + r.friction_binder + r.dissipation_shear_rate +
-                            r.dissipation_artefact + r.dissipation_numerical;
+                            r.dissipation_shear_hysteresis + r.dissipation_artefact + r.dissipation_numerical;
   return work - stored - dissipated;
 }
 

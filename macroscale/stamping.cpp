@@ -66,6 +66,7 @@ void add_to_history(HistoryRow& row, const StepAccount& account) {
   row.friction_die += l.friction[die];
   row.friction_binder += l.friction[binder];
   row.dissipation_shear_rate += l.shear_rate;
+  row.dissipation_shear_hysteresis += l.shear_hysteresis;
   row.dissipation_artefact += l.artefact;
   row.dissipation_numerical += l.numerical;
   row.ledger_residual = ledger_residual(row);
@@ -230,6 +231,8 @@ class Run {
     refuse(fault_of(checkpoint, scene_.blank, scene_.contact_sites, spec_.process.steps));
     if (scene_.heat.has_value() == checkpoint.state.heat.empty())
       refuse(scene_.heat ? "it has no temperatures" : "it has temperatures");
+    if (scene_.shear_friction.on() == checkpoint.state.shear_memory.empty())
+      refuse("friction between tows is on in one and off in the other");
     now_ = checkpoint;
     whole_ = now_;
     return Ending::done;

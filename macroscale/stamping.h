@@ -13,6 +13,7 @@
 #include "friction/model.h"
 #include "macroscale/cell_piece.h"
 #include "macroscale/outline.h"
+#include "macroscale/shear_friction.h"
 #include "macroscale/thermal/blank_heat.h"
 #include "macroscale/tool_file.h"
 #include "mesoscale/fabric_properties.h"
@@ -97,7 +98,8 @@ struct StampingSpec {
   BinderSpec binder;
   ProcessSpec process;
   ArtefactSpec artefact;
-  double shear_rate = 1.0;  ///< factor on the rate-dependent shear resistance; 0 is off [-]
+  double shear_rate = 1.0;       ///< factor on the rate-dependent shear resistance; 0 is off [-]
+  ShearFriction shear_friction;  ///< share of the shear resistance that is friction; 0 is off
   ContactPressure contact_pressure = ContactPressure::real;
   ContactSites contact_sites = ContactSites::nodes;
   bool compaction_follows_shear =
@@ -120,6 +122,7 @@ struct HistoryRow {
          energy_compaction = 0.0;
   double energy_kinetic = 0.0;
   double friction_punch = 0.0, friction_die = 0.0, friction_binder = 0.0;
+  double dissipation_shear_hysteresis = 0.0;  ///< friction between tows
   double dissipation_shear_rate = 0.0, dissipation_artefact = 0.0, dissipation_numerical = 0.0;
   double ledger_residual = 0.0;        ///< what the columns above leave over [J]
   double force_balance = 0.0;          ///< |sum F - sum m a| [N]

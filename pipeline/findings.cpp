@@ -8,6 +8,7 @@
 
 #include "macroscale/advice.h"
 #include "pipeline/indicator_outputs.h"
+#include "pipeline/shear_loop.h"
 #include "pipeline/stage_keys.h"
 
 namespace heddle::pipeline {
@@ -80,6 +81,8 @@ ReportInput report_input(const Case& a_case, const Findings& findings) {
   if (findings.cell) {
     input.cell = findings.cell->summary;
     input.fabric = findings.cell->fabric;
+    if (a_case.shear_friction.on())
+      input.shear_loop = shear_loop(findings.cell->fabric, a_case.shear_friction);
     input.height = report_height(findings.pictures->height);
     input.section = report_section(findings.pictures->section);
     input.tow_bodies = findings.pictures->bodies;
