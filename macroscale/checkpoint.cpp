@@ -16,7 +16,7 @@ namespace heddle::macroscale {
 namespace {
 
 // One name a member. A member added to HistoryRow must be added here too: the size tells.
-static_assert(sizeof(HistoryRow) == 27 * sizeof(double) + sizeof(std::optional<HeatRow>),
+static_assert(sizeof(HistoryRow) == 29 * sizeof(double) + sizeof(std::optional<HeatRow>),
               "HistoryRow has changed: name its new members here");
 template <class Row, class Visit>
 void each_number(Row& r, const Visit& visit) {
@@ -30,6 +30,9 @@ void each_number(Row& r, const Visit& visit) {
   visit("tow_strain_max", r.tow_strain_max);
   visit("newton_iterations", r.newton_iterations);
   visit("lag_iterations", r.lag_iterations);
+  visit("folded_nodes", r.folded_nodes);
+  visit("near_nodes", r.near_nodes);
+  visit("self_crossings", r.self_crossings);
   visit("work_punch", r.work_punch);
   visit("work_binder", r.work_binder);
   visit("energy_tow", r.energy_tow);

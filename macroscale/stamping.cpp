@@ -7,6 +7,7 @@
 #include <fmt/format.h>
 
 #include "macroscale/checkpoint.h"
+#include "macroscale/folds.h"
 #include "macroscale/ledger.h"
 #include "macroscale/punch_profile.h"
 #include "macroscale/quality.h"
@@ -87,6 +88,10 @@ void finish_row(HistoryRow& row, const BlankState& blank, const State& state, co
   row.tow_strain_max = 0.0;
   for (const auto& strain : blank.tow_strain)
     row.tow_strain_max = std::max({row.tow_strain_max, strain[0], strain[1]});
+  const Folds folds = find_folds(blank, scene.fabric->thickness);
+  row.folded_nodes = folds.folded;
+  row.near_nodes = folds.near;
+  row.self_crossings = folds.crossings;
 }
 
 // Parts of one step: no more tool motion at once than contact can follow.

@@ -117,6 +117,7 @@ struct HistoryRow {
   double tow_strain_max = 0.0;                                    ///< [-]
   int newton_iterations = 0;
   int lag_iterations = 0;
+  int folded_nodes = 0, near_nodes = 0, self_crossings = 0;  ///< of macroscale/folds.h
   double work_punch = 0.0, work_binder = 0.0;
   double energy_tow = 0.0, energy_shear = 0.0, energy_bending = 0.0, energy_twist = 0.0,
          energy_compaction = 0.0;
@@ -185,6 +186,8 @@ struct StampingSummary {
                                 ///< curve was carried on along its last slope [-]
   double friction_swing = 0.0;  ///< largest share of friction that came and went with each update of its
                                 ///< loads in a step that was accepted [-]; 0: all loads settled
+  int self_crossings = 0;       ///< tow segments that pass through the sheet, most in any step (folds.h)
+  double first_crossing = 0.0;  ///< punch displacement of the first step with one [m]
   bool falling_branch = false;  ///< the law fell with speed somewhere: the solution may not be unique
   int nodes = 0, steps = 0, rejected_steps = 0, newton_iterations = 0;
   int factorisations = 0;           ///< of the matrix; more than Newton iterations where it was indefinite

@@ -102,8 +102,8 @@ TEST_CASE("the history table has the columns other programs rely on", "[outputs]
       "friction_binder_J,dissipation_shear_rate_J,dissipation_shear_hysteresis_J,dissipation_artefact_J,"
       "dissipation_numerical_J,ledger_"
       "residual_J,"
-      "force_balance_N,friction_work_outside_calibration_J");
-  for (const std::string& line : lines) CHECK(split(line, ',').size() == 28);
+      "force_balance_N,folded_nodes,near_nodes,self_crossings,friction_work_outside_calibration_J");
+  for (const std::string& line : lines) CHECK(split(line, ',').size() == 31);
 }
 
 TEST_CASE("every history column holds its own quantity in its own unit", "[outputs]") {
@@ -117,9 +117,10 @@ TEST_CASE("every history column holds its own quantity in its own unit", "[outpu
   row.energy_kinetic = 18, row.friction_punch = 19, row.friction_die = 20, row.friction_binder = 21;
   row.dissipation_shear_rate = 22, row.dissipation_shear_hysteresis = 23;
   row.dissipation_artefact = 24, row.dissipation_numerical = 25, row.ledger_residual = 26;
-  row.force_balance = 27, row.friction_work_outside = 28;
+  row.force_balance = 27, row.folded_nodes = 28, row.near_nodes = 29, row.self_crossings = 30;
+  row.friction_work_outside = 31;
   const std::vector<std::string> cells = split(split(history_csv(std::vector{row}), '\n')[1], ',');
-  REQUIRE(cells.size() == 28);
+  REQUIRE(cells.size() == 31);
   CHECK(cells[0] == "0.43");
   CHECK(cells[1] == "62.5");
   CHECK(cells[5] == "7.8125");
