@@ -135,8 +135,8 @@ void check_shapes(Findings& f, const PunchSpec& punch, const DieSpec& die, const
 
 Problems check(const StampingSpec& spec) {
   Findings f;
-  const auto& [blank, punch, die, binder, process, artefact, shear_rate, contact_pressure, contact_sites,
-               compaction_follows_shear, heat] = spec;
+  const auto& [blank, punch, die, binder, process, artefact, shear_rate, shear_friction, contact_pressure,
+               contact_sites, compaction_follows_shear, heat] = spec;
   if (heat) f.add(thermal::check(*heat));
   const double die_edge = die.opening_radius + die.fillet;
   double edge = 0.0;
@@ -190,6 +190,14 @@ Problems check(const StampingSpec& spec) {
            fmt::format("{:g} N s/m^3", artefact.stabilisation), "must be >= 0", "0 is off.");
   f.demand(shear_rate >= 0.0, "effects.shear_rate.factor.range"_rule, "effects.shear_rate.factor",
            fmt::format("{:g}", shear_rate), "must be >= 0", "1 is what weave and melt give, 0 is off.");
+  f.demand(shear_friction.share >= 0.0 && shear_friction.share < 1.0,
+           "fabric.shear_hysteresis.share.range"_rule, "fabric.shear_hysteresis.share",
+           fmt::format("{:g}", shear_friction.share), "must be at least 0 and below 1",
+           "0 is off: shear gives back all it took. 1 would leave no spring in the fabric.");
+  f.demand(shear_friction.stiffness >= 1.0, "fabric.shear_hysteresis.stiffness.range"_rule,
+           "fabric.shear_hysteresis.stiffness", fmt::format("{:g}", shear_friction.stiffness),
+           "must be at least 1",
+           "Below, a reversal would be softer than the loading before it; 2 is the default.");
   return f.take();
 }
 

@@ -16,7 +16,7 @@ namespace heddle::macroscale {
 namespace {
 
 // One name a member. A member added to HistoryRow must be added here too: the size tells.
-static_assert(sizeof(HistoryRow) == 26 * sizeof(double) + sizeof(std::optional<HeatRow>),
+static_assert(sizeof(HistoryRow) == 29 * sizeof(double) + sizeof(std::optional<HeatRow>),
               "HistoryRow has changed: name its new members here");
 template <class Row, class Visit>
 void each_number(Row& r, const Visit& visit) {
@@ -30,6 +30,9 @@ void each_number(Row& r, const Visit& visit) {
   visit("tow_strain_max", r.tow_strain_max);
   visit("newton_iterations", r.newton_iterations);
   visit("lag_iterations", r.lag_iterations);
+  visit("folded_nodes", r.folded_nodes);
+  visit("near_nodes", r.near_nodes);
+  visit("self_crossings", r.self_crossings);
   visit("work_punch", r.work_punch);
   visit("work_binder", r.work_binder);
   visit("energy_tow", r.energy_tow);
@@ -42,6 +45,7 @@ void each_number(Row& r, const Visit& visit) {
   visit("friction_die", r.friction_die);
   visit("friction_binder", r.friction_binder);
   visit("dissipation_shear_rate", r.dissipation_shear_rate);
+  visit("dissipation_shear_hysteresis", r.dissipation_shear_hysteresis);
   visit("dissipation_artefact", r.dissipation_artefact);
   visit("dissipation_numerical", r.dissipation_numerical);
   visit("ledger_residual", r.ledger_residual);
@@ -155,6 +159,23 @@ std::vector<double> flat_memory(const State& state) {
   return flat;
 }
 
+static_assert(sizeof(ShearMemory) == 4 * sizeof(double), "ShearMemory has changed: keep its new members");
+
+// Nothing is written of a fabric whose tows do not rub.
+void write_shear_memory(Hdf5Writer& file, const std::string& path, const std::vector<ShearMemory>& memory) {
+  if (memory.empty()) return;
+  std::vector<std::array<double, 4>> rows;
+  for (const ShearMemory& m : memory) rows.push_back({m.sine, m.widest, m.stress, m.stiffness});
+  write_rows(file, path, rows);
+}
+
+std::vector<ShearMemory> read_shear_memory(const Hdf5Reader& file, const std::string& path) {
+  std::vector<ShearMemory> memory;
+  if (!file.has(path)) return memory;
+  for (const auto& row : read_rows<4>(file, path)) memory.push_back({row[0], row[1], row[2], row[3]});
+  return memory;
+}
+
 void write_heat(Hdf5Writer& file, const std::string& group, const BlankHeat& heat) {
   if (heat.empty()) return;
   file.write(group + "/cells", static_cast<int>(heat.field.cells));
@@ -189,6 +210,7 @@ void write_state(Hdf5Writer& file, const std::string& group, const State& state)
   file.write(group + "/v", std::span(state.v.data(), static_cast<std::size_t>(state.v.size())));
   file.write(group + "/tool_z", state.tool_z);
   file.write(group + "/corner_angle", state.corner_angle);
+  write_shear_memory(file, group + "/shear_memory", state.shear_memory);
   const std::size_t tools = state.memory.size(), nodes = tools > 0 ? state.memory[0].size() : 0;
   file.write(group + "/contact_memory", flat_memory(state), {tools, nodes, memory_size});
   write_heat(file, group + "/heat", state.heat);
@@ -204,6 +226,7 @@ State read_state(const Hdf5Reader& file, const std::string& group) {
   state.v = vector(file.doubles(group + "/v"));
   state.tool_z = file.doubles(group + "/tool_z");
   state.corner_angle = file.doubles(group + "/corner_angle");
+  state.shear_memory = read_shear_memory(file, group + "/shear_memory");
   const auto flat = read_rows<memory_size>(file, group + "/contact_memory");
   const std::size_t tools = state.tool_z.size();
   if (tools == 0 || flat.size() % tools != 0) throw Hdf5Error(group + "/contact_memory has the wrong length");
@@ -396,6 +419,8 @@ std::string fault_of(const StampingCheckpoint& c, const Blank& blank, ContactSit
   if (!c.state.heat.empty() &&
       (c.state.heat.field.nodes() != nodes || c.state.heat.rate_factor.size() != blank.quads.size()))
     return "its temperatures are of another blank";
+  if (!c.state.shear_memory.empty() && c.state.shear_memory.size() != c.state.corner_angle.size())
+    return "its memory of shear is of another blank";
   if (c.blank.position.size() != nodes) return "its picture is of another blank";
   return "";
 }

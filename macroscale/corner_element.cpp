@@ -26,8 +26,14 @@ constexpr double sine_limit = 0.99999;
 // Psi(s): the stored curve is its slope for s >= 0, odd in s.
 CornerScalar shear_law(const CornerLaw& law, double s) {
   const double size = std::abs(s);
-  const Curve::Value slope = law.fabric->shear_stress.evaluate(size);
-  return {law.fabric->shear_stress.integral(size), std::copysign(slope.y, s), slope.slope};
+  const Curve& resistance = law.fabric->shear_stress;
+  const Curve::Value slope = resistance.evaluate(size);
+  const CornerScalar whole{resistance.integral(size), std::copysign(slope.y, s), slope.slope};
+  if (!law.memory) return whole;
+  const CornerScalar rubs = tow_friction(law.friction, resistance, *law.memory, s);
+  const double elastic = 1.0 - law.friction.share;
+  return {elastic * whole.energy + rubs.energy, elastic * whole.first + rubs.first,
+          elastic * whole.second + rubs.second};
 }
 
 // dt R(gdot) as a function of s, through gamma = asin(s).

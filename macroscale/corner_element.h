@@ -2,6 +2,7 @@
 
 #include <Eigen/Core>
 
+#include "macroscale/shear_friction.h"
 #include "mesoscale/fabric_properties.h"
 
 namespace heddle::macroscale {
@@ -13,6 +14,8 @@ namespace heddle::macroscale {
 /// a, b are the edge vectors from the corner node along warp and weft, p, q their directions, gamma = asin(s)
 /// the trellis shear angle, R = m_s/(n+1) |gdot|^(n+1) the rate term with gdot = (gamma - gamma_n)/dt.
 /// Evaluating at the corners (not at the centre) leaves no hourglass mode. See docs/theory/macroscale.md.
+/// Where a share f of the shear resistance is friction between the tows, Psi is (1 - f) Psi and the work done
+/// against that friction since the last step (macroscale/shear_friction.h).
 struct CornerLaw {
   const mesoscale::FabricProperties* fabric = nullptr;
   double area = 0.0;              ///< A/4 [m^2]
@@ -21,6 +24,8 @@ struct CornerLaw {
   double rate_consistency = 0.0;  ///< m_s at the blank's temperature [N s^n/m]; 0 = rate-free
   double rate_index = 1.0;        ///< n [-]
   double time_step = 0.0;         ///< dt [s]; 0 = no rate term
+  ShearFriction friction;
+  const ShearMemory* memory = nullptr;  ///< of this corner; null = no friction between tows
 };
 
 /// The law of a trimmed cell: its area counts by the share inside the outline.
@@ -28,11 +33,6 @@ inline CornerLaw trimmed(CornerLaw law, double share) {
   law.area *= share;
   return law;
 }
-
-/// A scalar law with its slopes in s = sin(gamma).
-struct CornerScalar {
-  double energy = 0.0, first = 0.0, second = 0.0;  ///< per area [N/m]
-};
 
 /// All that energy, forces and stiffness of a corner share: its kinematics, each law looked up once.
 struct CornerPoint {

@@ -17,6 +17,7 @@ struct Increment {
 struct CornerIncrements {
   Increment tow, shear;
   double rate = 0.0;
+  double hysteresis = 0.0;
 };
 
 CornerIncrements corner_increments(const System& system, const StepData& step, const State& end) {
@@ -31,6 +32,7 @@ CornerIncrements corner_increments(const System& system, const StepData& step, c
     for (std::size_t k = 0; k < 4; ++k) {
       const Corner& c = corners[k];
       const double before = start.corner_angle[4 * q + k];
+      here.memory = shear_memory(start, 4 * q + k);
       const Vector3d a0 = start.node(c.along_warp) - start.node(c.node),
                      b0 = start.node(c.along_weft) - start.node(c.node);
       const Vector3d a = end.node(c.along_warp) - end.node(c.node),
@@ -38,7 +40,13 @@ CornerIncrements corner_increments(const System& system, const StepData& step, c
       const CornerEnergy e0 = corner_energy(here, a0, b0, before), e = corner_energy(here, a, b, before);
       const CornerGradient g = corner_gradient(here, a, b, before);
       sum.tow.stored += e.tension - e0.tension;
-      sum.shear.stored += e.shear - e0.shear;
+      // The shear energy of a step holds what its tows rubbed away.
+      const double rubbed = here.memory
+                                ? here.area * dissipated_by_tows(here.friction, here.fabric->shear_stress,
+                                                                 *here.memory, end.shear_memory[4 * q + k])
+                                : 0.0;
+      sum.hysteresis += rubbed;
+      sum.shear.stored += e.shear - e0.shear - rubbed;
       sum.tow.work += g.tension_a.dot(a - a0) + g.tension_b.dot(b - b0);
       sum.shear.work += g.shear_a.dot(a - a0) + g.shear_b.dot(b - b0);
       sum.rate += g.rate_a.dot(a - a0) + g.rate_b.dot(b - b0);
@@ -85,7 +93,8 @@ Increment twist_increment(const System& system, const State& start, const State&
 }  // namespace
 
 double StepLedger::dissipated() const {
-  return std::accumulate(friction.begin(), friction.end(), 0.0) + shear_rate + artefact + numerical;
+  return std::accumulate(friction.begin(), friction.end(), 0.0) + shear_rate + shear_hysteresis + artefact +
+         numerical;
 }
 
 StepAccount account(const System& system, const StepData& step, const State& end) {
@@ -101,9 +110,11 @@ StepAccount account(const System& system, const StepData& step, const State& end
   ledger.tow = corner.tow.stored;
   ledger.shear = corner.shear.stored;
   ledger.shear_rate = corner.rate;
+  ledger.shear_hysteresis = corner.hysteresis;
   ledger.bending = bending.stored;
   ledger.twist = twist.stored;
   ledger.numerical += corner.tow.work - corner.tow.stored + corner.shear.work - corner.shear.stored;
+  ledger.numerical -= corner.hysteresis;
   ledger.numerical += bending.work - bending.stored + twist.work - twist.stored;
 
   Vector3d momentum_rate = Vector3d::Zero();

@@ -18,9 +18,10 @@ struct StepLedger {
   double tow = 0.0, shear = 0.0, bending = 0.0, twist = 0.0, compaction = 0.0;  ///< change of stored energy
   double kinetic = 0.0;                                                         ///< change of kinetic energy
   std::vector<double> friction;                                                 ///< dissipated at each tool
-  double shear_rate = 0.0;  ///< dissipated by rate-dependent shear: force times increment
-  double artefact = 0.0;    ///< dissipated by the stabilisation switch
-  double numerical = 0.0;   ///< of backward Euler: 1/2 |dv|^2_M and the second-order part of each stored term
+  double shear_rate = 0.0;        ///< dissipated by rate-dependent shear: force times increment
+  double shear_hysteresis = 0.0;  ///< dissipated between tows that turn at their crossovers
+  double artefact = 0.0;          ///< dissipated by the stabilisation switch
+  double numerical = 0.0;  ///< of backward Euler: 1/2 |dv|^2_M and the second-order part of each stored term
   double friction_outside = 0.0;  ///< share of friction done outside the calibrated box [J]
 
   double stored() const { return tow + shear + bending + twist + compaction + kinetic; }

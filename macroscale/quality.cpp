@@ -215,7 +215,7 @@ double ledger_residual(const HistoryRow& r) {
   const double stored = r.energy_tow + r.energy_shear + r.energy_bending + r.energy_twist +
                         r.energy_compaction + r.energy_kinetic;
   const double dissipated = r.friction_punch + r.friction_die + r.friction_binder + r.dissipation_shear_rate +
-                            r.dissipation_artefact + r.dissipation_numerical;
+                            r.dissipation_shear_hysteresis + r.dissipation_artefact + r.dissipation_numerical;
   return work - stored - dissipated;
 }
 
@@ -290,6 +290,8 @@ void summarise(StampingResult& result, const Blank& blank, const State& state, d
     largest_force = std::max(largest_force, std::abs(row.punch_force));
     s.shear_angle_max = std::max(s.shear_angle_max, row.shear_angle_max);
     s.draw_in_max = std::max(s.draw_in_max, row.draw_in_max);
+    if (s.self_crossings == 0 && row.self_crossings > 0) s.first_crossing = row.punch_displacement;
+    s.self_crossings = std::max(s.self_crossings, row.self_crossings);
     const double stored =
         row.energy_tow + row.energy_shear + row.energy_bending + row.energy_twist + row.energy_compaction;
     if (row.work_punch > work_floor && stored > 0.0)

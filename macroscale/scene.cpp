@@ -12,6 +12,7 @@ State initial_state(const Scene& scene) {
   for (int i = 0; i < nodes; ++i) state.x.segment<3>(3 * i) = scene.blank.reference[i];
   state.tool_z.assign(scene.tools.size(), 0.0);
   state.corner_angle.assign(4 * scene.blank.quads.size(), 0.0);
+  if (scene.shear_friction.on()) state.shear_memory.resize(state.corner_angle.size());
   state.memory.assign(scene.tools.size(),
                       std::vector<friction::ContactState>(contact_count(scene.blank, scene.contact_sites)));
   state.heat = initial_heat(scene);

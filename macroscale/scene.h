@@ -9,6 +9,7 @@
 #include "friction/model.h"
 #include "macroscale/blank.h"
 #include "macroscale/contact.h"
+#include "macroscale/shear_friction.h"
 #include "macroscale/stamping.h"
 #include "macroscale/thermal/blank_heat.h"
 #include "macroscale/tools.h"
@@ -32,6 +33,7 @@ struct Scene {
   double mass_scaling = 1.0;          ///< artefact; 1 = true mass
   double stabilisation = 0.0;         ///< artefact [N s/m^3]
   double shear_rate = 1.0;            ///< factor on the rate-dependent shear resistance; 0 is off
+  ShearFriction shear_friction;       ///< between tows; off by default
   ContactPressure contact_pressure = ContactPressure::real;
   ContactSites contact_sites = ContactSites::nodes;
   bool compaction_follows_shear = false;  ///< else the table of gamma = 0 on initial areas
@@ -47,16 +49,22 @@ struct Scene {
 
 /// Where everything is at one instant. Unknowns: 3 a node (x, y, z), then one z a loaded tool.
 struct State {
-  double time = 0.0;                                        ///< [s]
-  Eigen::VectorXd x;                                        ///< positions [m]
-  Eigen::VectorXd v;                                        ///< velocities [m/s]
-  std::vector<double> tool_z;                               ///< displacement of each tool along z [m]
-  std::vector<double> corner_angle;                         ///< gamma of each corner, 4 a quad [rad]
+  double time = 0.0;                      ///< [s]
+  Eigen::VectorXd x;                      ///< positions [m]
+  Eigen::VectorXd v;                      ///< velocities [m/s]
+  std::vector<double> tool_z;             ///< displacement of each tool along z [m]
+  std::vector<double> corner_angle;       ///< gamma of each corner, 4 a quad [rad]
+  std::vector<ShearMemory> shear_memory;  ///< of each corner; empty: no friction between tows
   std::vector<std::vector<friction::ContactState>> memory;  ///< per tool, per contact point
   BlankHeat heat;                                           ///< empty: one temperature a run
 
   Eigen::Vector3d node(int i) const { return x.segment<3>(3 * i); }
 };
+
+/// What a corner remembers of its shear, or null where tows do not rub.
+inline const ShearMemory* shear_memory(const State& state, std::size_t corner) {
+  return state.shear_memory.empty() ? nullptr : &state.shear_memory[corner];
+}
 
 /// The blank at rest in its reference position, tools where their shapes say.
 State initial_state(const Scene& scene);

@@ -76,6 +76,10 @@ void place(const System& system, const StepData& step, const VectorXd& x, State&
   for (int k = 0; k < static_cast<int>(scene.tools.size()); ++k)
     end.tool_z[k] = system.tool_position(step, x, k);
   end.corner_angle = corner_angles(scene.blank, end);
+  end.shear_memory = start.shear_memory;
+  for (std::size_t k = 0; k < end.shear_memory.size(); ++k)
+    end.shear_memory[k] = sheared_to(scene.shear_friction, scene.fabric->shear_stress, start.shear_memory[k],
+                                     std::sin(end.corner_angle[k]));
   end.memory = start.memory;
   end.heat = start.heat;
 }

@@ -7,6 +7,7 @@
 #include <fmt/format.h>
 
 #include "macroscale/checkpoint.h"
+#include "macroscale/folds.h"
 #include "macroscale/ledger.h"
 #include "macroscale/punch_profile.h"
 #include "macroscale/quality.h"
@@ -66,6 +67,7 @@ void add_to_history(HistoryRow& row, const StepAccount& account) {
   row.friction_die += l.friction[die];
   row.friction_binder += l.friction[binder];
   row.dissipation_shear_rate += l.shear_rate;
+  row.dissipation_shear_hysteresis += l.shear_hysteresis;
   row.dissipation_artefact += l.artefact;
   row.dissipation_numerical += l.numerical;
   row.ledger_residual = ledger_residual(row);
@@ -86,6 +88,10 @@ void finish_row(HistoryRow& row, const BlankState& blank, const State& state, co
   row.tow_strain_max = 0.0;
   for (const auto& strain : blank.tow_strain)
     row.tow_strain_max = std::max({row.tow_strain_max, strain[0], strain[1]});
+  const Folds folds = find_folds(blank, scene.fabric->thickness);
+  row.folded_nodes = folds.folded;
+  row.near_nodes = folds.near;
+  row.self_crossings = folds.crossings;
 }
 
 // Parts of one step: no more tool motion at once than contact can follow.
@@ -230,6 +236,8 @@ class Run {
     refuse(fault_of(checkpoint, scene_.blank, scene_.contact_sites, spec_.process.steps));
     if (scene_.heat.has_value() == checkpoint.state.heat.empty())
       refuse(scene_.heat ? "it has no temperatures" : "it has temperatures");
+    if (scene_.shear_friction.on() == checkpoint.state.shear_memory.empty())
+      refuse("friction between tows is on in one and off in the other");
     now_ = checkpoint;
     whole_ = now_;
     return Ending::done;

@@ -14,6 +14,7 @@
 #include "friction/model.h"
 #include "macroscale/cell_piece.h"
 #include "macroscale/outline.h"
+#include "macroscale/shear_friction.h"
 #include "macroscale/thermal/blank_heat.h"
 #include "macroscale/tool_file.h"
 #include "mesoscale/fabric_properties.h"
@@ -101,7 +102,8 @@ struct StampingSpec {
   BinderSpec binder;
   ProcessSpec process;
   ArtefactSpec artefact;
-  double shear_rate = 1.0;  ///< factor on the rate-dependent shear resistance; 0 is off [-]
+  double shear_rate = 1.0;       ///< factor on the rate-dependent shear resistance; 0 is off [-]
+  ShearFriction shear_friction;  ///< share of the shear resistance that is friction; 0 is off
   ContactPressure contact_pressure = ContactPressure::real;
   ContactSites contact_sites = ContactSites::nodes;
   bool compaction_follows_shear =
@@ -119,11 +121,13 @@ struct HistoryRow {
   double tow_strain_max = 0.0;                                    ///< [-]
   int newton_iterations = 0;
   int lag_iterations = 0;
+  int folded_nodes = 0, near_nodes = 0, self_crossings = 0;  ///< of macroscale/folds.h
   double work_punch = 0.0, work_binder = 0.0;
   double energy_tow = 0.0, energy_shear = 0.0, energy_bending = 0.0, energy_twist = 0.0,
          energy_compaction = 0.0;
   double energy_kinetic = 0.0;
   double friction_punch = 0.0, friction_die = 0.0, friction_binder = 0.0;
+  double dissipation_shear_hysteresis = 0.0;  ///< friction between tows
   double dissipation_shear_rate = 0.0, dissipation_artefact = 0.0, dissipation_numerical = 0.0;
   double ledger_residual = 0.0;        ///< what the columns above leave over [J]
   double force_balance = 0.0;          ///< |sum F - sum m a| [N]
@@ -186,6 +190,8 @@ struct StampingSummary {
                                 ///< curve was carried on along its last slope [-]
   double friction_swing = 0.0;  ///< largest share of friction that came and went with each update of its
                                 ///< loads in a step that was accepted [-]; 0: all loads settled
+  int self_crossings = 0;       ///< tow segments that pass through the sheet, most in any step (folds.h)
+  double first_crossing = 0.0;  ///< punch displacement of the first step with one [m]
   bool falling_branch = false;  ///< the law fell with speed somewhere: the solution may not be unique
   int nodes = 0, steps = 0, rejected_steps = 0, newton_iterations = 0;
   int factorisations = 0;           ///< of the matrix; more than Newton iterations where it was indefinite

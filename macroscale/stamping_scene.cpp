@@ -32,6 +32,7 @@ Scene stamping_scene(const StampingSpec& spec, const mesoscale::FabricProperties
   scene.mass_scaling = spec.artefact.mass_scaling;
   scene.stabilisation = spec.artefact.stabilisation;
   scene.shear_rate = spec.shear_rate;
+  scene.shear_friction = spec.shear_friction;
   scene.contact_pressure = spec.contact_pressure;
   scene.contact_sites = spec.contact_sites;
   scene.compaction_follows_shear = spec.compaction_follows_shear;

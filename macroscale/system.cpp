@@ -128,6 +128,7 @@ CornerLaw System::corner_law(const StepData& step) const {
         scene_.shear_rate * scene_.fabric->shear_rate.consistency_at(scene_.blank_temperature);
   law.rate_index = scene_.fabric->shear_rate.index;
   law.time_step = step.dt;
+  law.friction = scene_.shear_friction;
   return law;
 }
 
@@ -143,6 +144,7 @@ void System::evaluate(const StepData& step, const VectorXd& x, Position& at) con
     for (int k = 0; k < 4; ++k) {
       const Corner& c = corners[k];
       const Vector3d origin = node_of(x, c.node);
+      here.memory = shear_memory(*step.start, 4 * q + k);
       at.corners[4 * q + k] =
           corner_point(here, node_of(x, c.along_warp) - origin, node_of(x, c.along_weft) - origin,
                        step.start->corner_angle[4 * q + k]);

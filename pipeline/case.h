@@ -61,7 +61,8 @@ struct Case {
   std::optional<FrictionTestSpec> friction_test;
   std::optional<FrictionMachineSpec> friction_machine;
   std::optional<macroscale::StampingSpec> stamping;
-  bool grid_error = false;                                ///< the stamping is run once more on a coarser grid
+  macroscale::ShearFriction shear_friction;  ///< between tows, also for shear tests without a stamping
+  bool grid_error = false;                   ///< the stamping is run once more on a coarser grid
   std::optional<OrientationStudySpec> orientation_study;  ///< runs the stamping once an angle
   std::optional<mesoscale::study::StudySpec> study;       ///< what `heddle study` is to change of the weave
   std::optional<CalibrateSpec> calibrate;                 ///< what `heddle calibrate` is to fit

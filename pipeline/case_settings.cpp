@@ -260,6 +260,13 @@ macroscale::ProcessSpec process_of(const Settings& settings) {
   return process;
 }
 
+macroscale::ShearFriction shear_friction_of(const Settings& settings) {
+  macroscale::ShearFriction friction;
+  take(settings, "fabric.shear_hysteresis.share", friction.share);
+  take(settings, "fabric.shear_hysteresis.stiffness", friction.stiffness);
+  return friction;
+}
+
 std::optional<macroscale::ToolFileSpec> tool_file_of(const Settings& settings, const std::string& tool,
                                                      const std::filesystem::path& folder) {
   const std::string block = "tools." + tool;
@@ -304,6 +311,7 @@ macroscale::StampingSpec stamping_of(const Settings& settings, const std::filesy
   take(settings, "artefact.stabilisation", stamping.artefact.stabilisation);
   take(settings, "effects.shear_rate.factor", stamping.shear_rate);
   if (settings.is("fabric.shear_rate", "off")) stamping.shear_rate = 0.0;
+  stamping.shear_friction = shear_friction_of(settings);
   stamping.contact_pressure = contact_pressure_of(settings);
   if (settings.is("contact.points", "gauss")) stamping.contact_sites = macroscale::ContactSites::gauss;
   stamping.compaction_follows_shear = settings.is("contact.compaction", "sheared");
@@ -333,6 +341,7 @@ Case case_of(const ReadConfig& config, const std::filesystem::path& folder) {
   if (result.friction_test && settings.blocks.count("friction_test.rig") > 0)
     result.friction_machine = friction_machine_of(settings);
   if (runs(Stage::stamping)) result.stamping = stamping_of(settings, folder);
+  result.shear_friction = shear_friction_of(settings);
   result.grid_error = runs(Stage::grid_error) && settings.is("blank.grid_error", "on");
   if (runs(Stage::orientation_study)) {
     result.orientation_study.emplace();

@@ -130,6 +130,7 @@ void run_stamping(const Case& a_case, RunFolder& folder, const Cache& cache, Fin
   if (findings.indicators.empty()) return;  // the binder never closed
   folder.write("macroscale/indicators.csv", indicators_csv(findings.indicators));
   folder.log(indicator_line(findings.indicators));
+  findings.folds = macroscale::find_folds(blank, findings.cell->fabric.thickness);
   if (a_case.stamping->thermal && findings.stamping->summary.completed && findings.solid &&
       findings.solid->sheared.size() >= 2)
     folder.write("macroscale/part_stiffness.csv",

@@ -147,6 +147,12 @@ std::vector<Key> fabric_keys() {
       {.path = "fabric.shear_rate", .type = KeyType::choice, .presence = defaulted, .default_text = "on",
        .choices = {"on", "off"}, .stage = cell,
        .help = "Master switch of the rate-dependent shear resistance."},
+      {.path = "fabric.shear_hysteresis.share", .type = KeyType::quantity, .presence = defaulted,
+       .default_text = "0", .range = "[0, 1)", .stage = Stage::stamping,
+       .help = "Share of the shear resistance that is friction between tows: loading stays the fabric's curve, unloading leaves a loop. 0 is off; any other value is a prior."},
+      {.path = "fabric.shear_hysteresis.stiffness", .type = KeyType::quantity, .presence = defaulted,
+       .default_text = "2", .range = "[1, 1000]", .stage = Stage::stamping,
+       .help = "Stiffness of that friction when shear turns back, over the steepest slope it has had on loading; a prior."},
   };
 }
 

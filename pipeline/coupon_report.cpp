@@ -69,6 +69,29 @@ Canvas frame_chart(const FabricProperties& fabric) {
   return draw(chart);
 }
 
+Series series_of(const ShearLoop::Way& way, const char* name) {
+  Series series{name, {}, {}};
+  for (const double angle : way.angle) series.x.push_back(degrees * angle);
+  for (const double force : way.force) series.y.push_back(1e-3 * force);
+  return series;
+}
+
+std::string loop_figure(const ShearLoop& loop) {
+  LineChart chart;
+  chart.label = "Shear force per width of a picture frame that goes to and fro";
+  chart.x = {"Shear angle", "°"};
+  chart.y = {"Shear force", "N/mm"};
+  chart.series = {series_of(loop.cycles, "to and fro"), series_of(loop.first, "first loading")};
+  chart.label_room = 110.0;
+  return figure(
+      draw(chart),
+      fmt::format("The frame to 20° and to 40° and to both sides, without the rate's part: {:g} % of the "
+                  "resistance is friction between tows and turns round with the shear. The first "
+                  "loading is the fabric's curve whatever that share is. The share is a prior: no "
+                  "unloading of this fabric is at hand.",
+                  100.0 * loop.share));
+}
+
 Canvas strip_chart(const FabricProperties& fabric) {
   LineChart chart;
   chart.label = "Force of a bias extension over the displacement of its crosshead";
@@ -99,24 +122,27 @@ std::string bias_extension_csv(const FabricProperties& fabric) {
   return csv_of(fabric, [&](const CouponPull& pull) { return mesoscale::bias_extension(fabric, {}, pull); });
 }
 
-std::string coupon_section(const FabricProperties& fabric) {
+std::string coupon_section(const FabricProperties& fabric, const std::optional<ShearLoop>& loop) {
   if (fabric.shear_stress.empty()) return "";
   const mesoscale::PictureFrame frame;
   const mesoscale::BiasExtension strip;
   return pair(
-      figure(frame_chart(fabric),
-             fmt::format(
-                 "Picture frame, {:g} mm, filled: shear force per width, at three speeds of the "
-                 "crosshead. Dots: what is recalled of plain glass and polypropylene weaves in frames at "
-                 "room temperature; band: a half to a tenth of that, as recalled of the molten fabric. "
-                 "Neither is a validation: laboratories differ by 2 to 5 times, and pretension "
-                 "raises the force as much.",
-                 1e3 * frame.side)),
-      figure(
-          strip_chart(fabric),
-          fmt::format("Bias extension of a strip of {:g} x {:g} mm, up to 50° in its middle, by the zones of "
-                      "ideal trellis shear.",
-                      1e3 * strip.length, 1e3 * strip.width)));
+             figure(
+                 frame_chart(fabric),
+                 fmt::format(
+                     "Picture frame, {:g} mm, filled: shear force per width, at three speeds of the "
+                     "crosshead. Dots: what is recalled of plain glass and polypropylene weaves in frames at "
+                     "room temperature; band: a half to a tenth of that, as recalled of the molten fabric. "
+                     "Neither is a validation: laboratories differ by 2 to 5 times, and pretension "
+                     "raises the force as much.",
+                     1e3 * frame.side)),
+             figure(
+                 strip_chart(fabric),
+                 fmt::format(
+                     "Bias extension of a strip of {:g} x {:g} mm, up to 50° in its middle, by the zones of "
+                     "ideal trellis shear.",
+                     1e3 * strip.length, 1e3 * strip.width))) +
+         (loop ? loop_figure(*loop) : "");
 }
 
 }  // namespace heddle::pipeline

@@ -8,6 +8,7 @@
 
 #include "macroscale/advice.h"
 #include "pipeline/indicator_outputs.h"
+#include "pipeline/shear_loop.h"
 #include "pipeline/stage_keys.h"
 
 namespace heddle::pipeline {
@@ -80,6 +81,8 @@ ReportInput report_input(const Case& a_case, const Findings& findings) {
   if (findings.cell) {
     input.cell = findings.cell->summary;
     input.fabric = findings.cell->fabric;
+    if (a_case.shear_friction.on())
+      input.shear_loop = shear_loop(findings.cell->fabric, a_case.shear_friction);
     input.height = report_height(findings.pictures->height);
     input.section = report_section(findings.pictures->section);
     input.tow_bodies = findings.pictures->bodies;
@@ -111,6 +114,10 @@ ReportInput report_input(const Case& a_case, const Findings& findings) {
     input.warnings = indicator_warnings(
         findings.indicators,
         indicator_limits(*a_case.stamping, findings.cell->fabric, findings.stamping->summary.spacing));
+    if (findings.folds) {
+      const auto folds = fold_warnings(*findings.folds, findings.stamping->summary);
+      input.warnings.insert(input.warnings.end(), folds.begin(), folds.end());
+    }
   }
   input.notes.insert(input.notes.end(), a_case.notes.begin(), a_case.notes.end());
   return input;
@@ -142,6 +149,7 @@ void write_findings(const Case& a_case, RunFolder& folder, const Findings& findi
     record.stamping = findings.stamping->summary;
     record.grid_error = findings.grid_error;
     record.indicators = findings.indicators;
+    record.folds = findings.folds;
     record.failure = findings.stamping->failure;
     if (record.failure)
       record.advice = macroscale::advice_for(*record.failure, *a_case.stamping, *record.stamping);

@@ -6,6 +6,7 @@
 #include <utility>
 #include <vector>
 
+#include "macroscale/folds.h"
 #include "macroscale/indicators.h"
 #include "pipeline/case.h"
 #include "pipeline/friction_rig_stage.h"
@@ -28,6 +29,7 @@ struct Findings {
   std::optional<macroscale::StampingResult> stamping;
   std::optional<macroscale::GridError> grid_error;
   std::vector<macroscale::LargestIndicator> indicators;  ///< of the last state
+  std::optional<macroscale::Folds> folds;                ///< of the last state
 };
 
 /// Which stages a command runs.

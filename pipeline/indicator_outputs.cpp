@@ -1,6 +1,7 @@
 #include "pipeline/indicator_outputs.h"
 
 #include <algorithm>
+#include <numbers>
 #include <stdexcept>
 
 #include <fmt/format.h>
@@ -27,10 +28,14 @@ const LargestIndicator& named(const std::vector<LargestIndicator>& all, const st
   return *found;
 }
 
-std::string place(const LargestIndicator& indicator) {
-  return fmt::format("at ({:.0f}, {:.0f}, {:.0f}) mm", 1e3 * indicator.at[0], 1e3 * indicator.at[1],
-                     1e3 * indicator.at[2]);
+std::string place(const std::array<double, 3>& at) {
+  return fmt::format("at ({:.0f}, {:.0f}, {:.0f}) mm", 1e3 * at[0], 1e3 * at[1], 1e3 * at[2]);
 }
+std::string place(const LargestIndicator& indicator) {
+  return place(indicator.at);
+}
+
+constexpr double degrees = 180.0 / std::numbers::pi;
 
 }  // namespace
 
@@ -44,6 +49,11 @@ QuadMesh mesh_with_indicators(const macroscale::BlankState& blank,
   for (double& value : height.values) value *= 1e3;
   add_nodal(mesh, blank, std::move(height));
   add_nodal(mesh, blank, {"thickening", 1, of.thickening});
+  macroscale::Folds folds = macroscale::find_folds(blank, fabric.thickness);
+  for (double& turn : folds.turn) turn *= degrees;
+  for (double& distance : folds.distance) distance *= 1e3;
+  add_nodal(mesh, blank, {"fold_turn_deg", 1, std::move(folds.turn)});
+  add_nodal(mesh, blank, {"self_distance_mm", 1, std::move(folds.distance)});
   return mesh;
 }
 
@@ -89,6 +99,23 @@ std::vector<std::string> indicator_warnings(const std::vector<LargestIndicator>&
         fmt::format("The sheet waves by {:.2g} mm {}, more than the {:.2g} mm that grid and fillets leave: "
                     "look for wrinkles.",
                     height.value, place(height), 1e3 * limits.wrinkle_height));
+  return warnings;
+}
+
+std::vector<std::string> fold_warnings(const macroscale::Folds& folds,
+                                       const macroscale::StampingSummary& run) {
+  std::vector<std::string> warnings;
+  if (run.self_crossings > 0)
+    warnings.push_back(fmt::format(
+        "The sheet has passed through itself: up to {} tow segments cross it in one step, from {:.1f} mm of "
+        "stroke on. It feels no contact with itself, so forces and shapes after that are not to be trusted.",
+        run.self_crossings, 1e3 * run.first_crossing));
+  if (folds.place.empty()) return warnings;
+  const macroscale::FoldPlace& largest = folds.place.front();
+  warnings.push_back(fmt::format(
+      "The sheet folds on itself in {} place{}, the largest {}: {} nodes turn by more than 120° within four "
+      "spacings, {} stand nearer than a thickness to another part of it.",
+      folds.place.size(), folds.place.size() == 1 ? "" : "s", place(largest.at), folds.folded, folds.near));
   return warnings;
 }
 

@@ -3,13 +3,14 @@
 #include <string>
 #include <vector>
 
+#include "macroscale/folds.h"
 #include "macroscale/indicators.h"
 #include "pipeline/export_vtu.h"
 
 namespace heddle::pipeline {
 
 /// The blank as mesh_of has it, with its indicators: tow_load_warp_weft, gap_opening_warp_weft_mm,
-/// wrinkle_height_mm, thickening.
+/// wrinkle_height_mm, thickening; and fold_turn_deg, self_distance_mm of its folds.
 QuadMesh mesh_with_indicators(const macroscale::BlankState& blank, const mesoscale::FabricProperties& fabric);
 
 /// indicators.csv: name, value, unit, and where the largest is [mm].
@@ -29,6 +30,10 @@ IndicatorLimits indicator_limits(const macroscale::StampingSpec& spec,
 /// A sentence for each indicator beyond its limit, for report and terminal.
 std::vector<std::string> indicator_warnings(const std::vector<macroscale::LargestIndicator>& indicators,
                                             const IndicatorLimits& limits);
+/// Sentences on a sheet that folds, comes near itself or has passed through itself, in the last state or
+/// before.
+std::vector<std::string> fold_warnings(const macroscale::Folds& folds,
+                                       const macroscale::StampingSummary& run);
 /// One sentence with all of them, for the log.
 std::string indicator_line(const std::vector<macroscale::LargestIndicator>& indicators);
 

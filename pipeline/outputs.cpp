@@ -84,10 +84,14 @@ constexpr Column<History> history_columns[] = {
     {"friction_die_J", [](const History& r) { return r.friction_die; }},
     {"friction_binder_J", [](const History& r) { return r.friction_binder; }},
     {"dissipation_shear_rate_J", [](const History& r) { return r.dissipation_shear_rate; }},
+    {"dissipation_shear_hysteresis_J", [](const History& r) { return r.dissipation_shear_hysteresis; }},
     {"dissipation_artefact_J", [](const History& r) { return r.dissipation_artefact; }},
     {"dissipation_numerical_J", [](const History& r) { return r.dissipation_numerical; }},
     {"ledger_residual_J", [](const History& r) { return r.ledger_residual; }},
     {"force_balance_N", [](const History& r) { return r.force_balance; }},
+    {"folded_nodes", [](const History& r) { return static_cast<double>(r.folded_nodes); }},
+    {"near_nodes", [](const History& r) { return static_cast<double>(r.near_nodes); }},
+    {"self_crossings", [](const History& r) { return static_cast<double>(r.self_crossings); }},
     // A share of the friction columns, not a column of the ledger: it stands behind them and is not summed.
     {"friction_work_outside_calibration_J", [](const History& r) { return r.friction_work_outside; }},
 };

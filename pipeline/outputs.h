@@ -11,6 +11,7 @@
 #include <utility>
 #include <vector>
 
+#include "macroscale/folds.h"
 #include "macroscale/grid_error.h"
 #include "macroscale/indicators.h"
 #include "macroscale/stamping.h"
@@ -149,6 +150,7 @@ struct SummaryRecord {
   std::optional<macroscale::StampingSummary> stamping = {};
   std::optional<macroscale::GridError> grid_error = {};
   std::vector<macroscale::LargestIndicator> indicators = {};  ///< of the last state
+  std::optional<macroscale::Folds> folds = {};                ///< of the last state
   std::optional<macroscale::StampingFailure> failure = {};    ///< of a stamping that stopped
   std::string advice = {};                                    ///< what to try after it
 };

@@ -342,6 +342,27 @@ mesoscale::FabricProperties read_fabric(Reader& reader, const Json& root) {
   return fabric;
 }
 
+constexpr std::size_t places_shown = 10;
+
+Json folds_json(const macroscale::Folds& folds, const macroscale::StampingSummary& run) {
+  Json places = Json::array();
+  for (std::size_t k = 0; k < std::min(folds.place.size(), places_shown); ++k) {
+    const macroscale::FoldPlace& place = folds.place[k];
+    places.push_back({{"at_mm", {1e3 * place.at[0], 1e3 * place.at[1], 1e3 * place.at[2]}},
+                      {"nodes", place.nodes},
+                      {"turn_deg", degrees * place.turn},
+                      {"distance_mm", 1e3 * place.distance}});
+  }
+  Json out{{"count", folds.place.size()},
+           {"folded_nodes", folds.folded},
+           {"near_nodes", folds.near},
+           {"self_crossings", folds.crossings},
+           {"places", places},
+           {"self_crossings_in_any_step", run.self_crossings}};
+  if (run.self_crossings > 0) out["first_self_crossing_mm"] = 1e3 * run.first_crossing;
+  return out;
+}
+
 std::string name_with_unit(const macroscale::LargestIndicator& indicator) {
   return indicator.name + (indicator.unit.empty() ? "" : "_" + indicator.unit);
 }
@@ -370,6 +391,8 @@ std::string summary_json(const SummaryRecord& record) {
     root["macroscale"]["grid_error"] = grid_error_json(*record.grid_error);
   for (const macroscale::LargestIndicator& indicator : record.indicators)
     root["macroscale"]["indicators"][name_with_unit(indicator)] = indicator.value;
+  if (record.stamping && record.folds)
+    root["macroscale"]["folds"] = folds_json(*record.folds, *record.stamping);
   if (record.failure) root["failure"] = failure_json(*record.failure, record.advice);
   return json_text(root);
 }

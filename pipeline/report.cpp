@@ -313,7 +313,7 @@ std::string report_html(const ReportInput& input) {
   if (input.stack) out += section("Plies on one another", stack_section(*input.stack));
   // A stamping has enough to show; its weave has a report of its own.
   if (input.fabric && !input.stamping)
-    out += section("Shear tests as the laws predict them", coupon_section(*input.fabric));
+    out += section("Shear tests as the laws predict them", coupon_section(*input.fabric, input.shear_loop));
   out += section("The solid part", solid_part(input));
   out += section("Contact and friction", friction_section(input));
   out += section("The friction test as a machine", rig(input));

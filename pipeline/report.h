@@ -11,6 +11,7 @@
 #include "mesoscale/level_set.h"
 #include "mesoscale/solid/solid_cell.h"
 #include "mesoscale/touched_face.h"
+#include "pipeline/coupon_report.h"
 #include "pipeline/outputs.h"
 #include "pipeline/picture.h"
 #include "pipeline/stack_report.h"
@@ -38,7 +39,8 @@ struct ReportInput {
 
   std::optional<mesoscale::CellSummary> cell = {};
   std::optional<mesoscale::FabricProperties> fabric = {};
-  std::optional<StackView> stack = {};  ///< of several plies
+  std::optional<ShearLoop> shear_loop = {};  ///< where tows rub
+  std::optional<StackView> stack = {};       ///< of several plies
   std::optional<mesoscale::solid::SolidResult> solid = {};
   HeightField height = {};
   std::optional<mesoscale::TowBodies> tow_bodies = {};

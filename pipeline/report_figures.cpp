@@ -104,7 +104,7 @@ Canvas ledger_chart(const Rows& history) {
     int style;
   };
   // Bottom to top; stored energy blue, friction orange, other losses green and grey.
-  static constexpr std::array<Entry, 12> entries{
+  static constexpr std::array<Entry, 13> entries{
       {{"Tow stretch", &HistoryRow::energy_tow, 0},
        {"Fabric shear", &HistoryRow::energy_shear, 1},
        {"Bending", &HistoryRow::energy_bending, 2},
@@ -115,6 +115,7 @@ Canvas ledger_chart(const Rows& history) {
        {"Friction, binder", &HistoryRow::friction_binder, 7},
        {"Friction, punch", &HistoryRow::friction_punch, 8},
        {"Resin shear rate", &HistoryRow::dissipation_shear_rate, 9},
+       {"Friction of tows", &HistoryRow::dissipation_shear_hysteresis, 6},
        {"Time stepping", &HistoryRow::dissipation_numerical, 10},
        {"Artefacts", &HistoryRow::dissipation_artefact, 11}}};
   StackedChart chart;
@@ -123,6 +124,8 @@ Canvas ledger_chart(const Rows& history) {
   chart.y = {"Energy", "J"};
   chart.at = stroke(history);
   for (const Entry& entry : entries) {
+    const bool rubs = !history.empty() && history.back().dissipation_shear_hysteresis > 0.0;
+    if (entry.value == &HistoryRow::dissipation_shear_hysteresis && !rubs) continue;  // switched off
     chart.bands.push_back({entry.name, {}, column(history, 1.0, entry.value)});
     chart.band_style.push_back(entry.style);
   }

@@ -186,6 +186,8 @@ const std::vector<BadFile> bad_files{
     {"set_without_a_path", {{"set.syntax", 0}}},
     {"shape_misspelt", {{"blank.shape.choice", 7}}},
     {"slow_down_longer_than_the_stroke", {{"process.punch.slow_down.shorter", 5}}},
+    {"shear_hysteresis_out_of_range",
+     {{"fabric.shear_hysteresis.share.range", 4}, {"fabric.shear_hysteresis.stiffness.range", 4}}},
     {"shear_rate_negative", {{"effects.shear_rate.factor.range", 8}}},
     {"solid_out_of_range",
      {{"solid.per_pitch.range", 5}, {"solid.resin_poisson.range", 6}, {"solid.tow_model.choice", 7}}},

@@ -32,6 +32,7 @@ const std::string stamping =
 struct Run {
   std::string history;  ///< history.csv
   double force;         ///< of the punch at the end [N]
+  macroscale::HistoryRow last;
 };
 
 /// The keys `effects: {id: ...}` of a file, through the solver, to the bytes of history.csv.
@@ -43,7 +44,7 @@ Run run(const std::string& effects, const std::vector<std::string>& assignments 
   fabric.contact.log_fraction = CurveFamily({0.0}, {Curve({0.0, 20.0}, {-2.0, -0.2})});
   const auto result = macroscale::run_stamping(*a_case.stamping, fabric, a_case.friction->model);
   REQUIRE(result.summary.completed);
-  return {pipeline::history_csv(result.history), result.history.back().punch_force};
+  return {pipeline::history_csv(result.history), result.history.back().punch_force, result.history.back()};
 }
 
 /// The amplitude, which is the first number of each effect. Hersey numbers here lie far beyond the boundary
@@ -110,6 +111,18 @@ TEST_CASE(
   const double once = with_factor(1e-5).force - off.force, twice = with_factor(2e-5).force - off.force;
   CAPTURE(once, twice);
   CHECK(once != 0.0);
+  CHECK(twice == Approx(2.0 * once).epsilon(0.01));
+}
+
+TEST_CASE("friction between tows is off at a share of 0 to the byte, and linear when tiny",
+          "[pipeline][effect]") {
+  const auto lost = [](const Run& one) { return one.last.dissipation_shear_hysteresis; };
+  const auto with_share = [](double share) {
+    return run("fabric: {shear_hysteresis: {share: " + pipeline::shortest(share) + "}}\n");
+  };
+  CHECK((with_share(0.0).history == run("").history));
+  const double once = lost(with_share(1e-6)), twice = lost(with_share(2e-6));
+  CHECK(once > 0.0);
   CHECK(twice == Approx(2.0 * once).epsilon(0.01));
 }
 

@@ -74,3 +74,32 @@ TEST_CASE("the table of indicators says where each is largest", "[pipeline][indi
   REQUIRE(table.rows.size() == 6);
   CHECK(table.rows[0].cells == std::vector<std::string>{"tow_load_max", "0.4", "", "10", "20", "-30"});
 }
+
+TEST_CASE("folds are told where they are, and a sheet that has passed through itself in so many words",
+          "[pipeline][indicators][folds]") {
+  macroscale::StampingSummary run;
+  macroscale::Folds none;
+  CHECK(pipeline::fold_warnings(none, run).empty());
+  macroscale::Folds folds;
+  folds.folded = 12;
+  folds.near = 3;
+  folds.place = {{15, {0.01, 0.02, -0.03}, 2.5, 1e-3}, {2, {}, 2.2, 1.5e-3}};
+  const auto said = pipeline::fold_warnings(folds, run);
+  REQUIRE(said.size() == 1);
+  CHECK_THAT(said[0], Catch::Contains("in 2 places") && Catch::Contains("(10, 20, -30) mm") &&
+                          Catch::Contains("12 nodes turn") && Catch::Contains("3 stand nearer"));
+  // Said even if nothing crosses any more in the end.
+  run.self_crossings = 4;
+  run.first_crossing = 0.0315;
+  REQUIRE(pipeline::fold_warnings(none, run).size() == 1);
+  CHECK_THAT(pipeline::fold_warnings(none, run)[0],
+             Catch::Contains("passed through itself") && Catch::Contains("31.5 mm"));
+
+  pipeline::SummaryRecord record;
+  record.stamping = run;
+  record.folds = folds;
+  const std::string text = pipeline::summary_json(record);
+  for (const char* part : {"\"folds\": {", "\"count\": 2", "\"folded_nodes\": 12", "\"distance_mm\": 1.0",
+                           "\"self_crossings_in_any_step\": 4", "\"first_self_crossing_mm\": 31.5"})
+    CHECK_THAT(text, Catch::Contains(part));
+}

@@ -1,0 +1,79 @@
+// What looking for folds costs once a step, beside one Newton iteration on the same grid (laws, matrix,
+// factors, back-substitution, forces) and beside merely reading the positions of all corners of all cells
+// once.
+//
+//     benchmark_folds [spacing in mm]
+//
+// Appends a row to benchmarks/results/folds.csv. Times are the best of many repeats.
+#include <fmt/format.h>
+
+#include <cmath>
+#include <cstdio>
+#include <cstdlib>
+#include <numbers>
+
+#include "benchmarks/measure.h"
+#include "macroscale/folds.h"
+#include "macroscale/quality.h"
+#include "macroscale/solve.h"
+#include "tests/macroscale/sample_fabric.h"
+
+using namespace heddle;
+using namespace heddle::macroscale;
+using namespace heddle::benchmark;
+using Eigen::Vector3d;
+
+namespace {
+
+constexpr double radius = 70e-3, side = 320e-3;  // the shipped punch and blank
+
+// The blank over dome and wall by arc length.
+Vector3d formed(const Vector3d& flat) {
+  const double s = std::hypot(flat.x(), flat.y()), quarter = 0.5 * std::numbers::pi * radius;
+  const double a = std::min(s, quarter) / radius, r = radius * std::sin(a);
+  const double z = radius - radius * std::cos(a) + std::max(s - quarter, 0.0);
+  return s > 0.0 ? Vector3d(r * flat.x() / s, r * flat.y() / s, z) : Vector3d(0, 0, 0);
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  const double spacing = 1e-3 * (argc > 1 ? std::atof(argv[1]) : 4.5);
+  const mesoscale::FabricProperties fabric = test::make_fabric({});
+  Scene scene;
+  scene.blank = make_blank({side, side}, spacing);
+  scene.fabric = &fabric;
+  System system(scene);
+  State state = initial_state(scene);
+  for (int n = 0; n < scene.blank.nodes(); ++n) state.x.segment<3>(3 * n) = formed(scene.blank.reference[n]);
+  state.corner_angle = corner_angles(scene.blank, state);
+  const BlankState blank = blank_state(system, state, nullptr);
+
+  double sum = 0.0;
+  const double look = best_seconds(20, [&] { sum += find_folds(blank, fabric.thickness).near; });
+  const double bare = best_seconds(50, [&] {
+    for (const auto& quad : blank.quads)
+      for (const int n : quad) sum += blank.position[static_cast<std::size_t>(n)][2];
+  });
+  StepData step;
+  step.start = &state;
+  step.dt = 4e-3;
+  step.target = state.x;
+  step.frictionless = true;
+  Position at;
+  const double iteration = best_seconds(5, [&] {
+    system.evaluate(step, state.x, at);
+    system.assemble(step, at, Filter::positive);
+    if (!system.solver().factorise()) std::abort();
+    Eigen::VectorXd g = system.gradient(step, at);
+    system.solver().solve({g.data(), static_cast<std::size_t>(g.size())});
+    sum += g[0];
+  });
+  fmt::print(
+      "{} nodes: folds {:.2f} ms, one Newton iteration {:.1f} ms ({:.1f} %), reading all corners {:.3f} ms\n",
+      scene.blank.nodes(), 1e3 * look, 1e3 * iteration, 100.0 * look / iteration, 1e3 * bare);
+  if (!std::isfinite(sum)) return 1;
+  append_row("folds", "date,nodes,folds_ms,iteration_ms,bare_read_ms,folds_over_iteration",
+             fmt::format("{},{},{:.3f},{:.2f},{:.4f},{:.4f}", today(), scene.blank.nodes(), 1e3 * look,
+                         1e3 * iteration, 1e3 * bare, look / iteration));
+}

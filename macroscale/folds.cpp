@@ -1,0 +1,307 @@
+#include "macroscale/folds.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+#include <numeric>
+#include <stdexcept>
+
+#include <Eigen/Geometry>
+
+namespace heddle::macroscale {
+
+namespace {
+
+using Eigen::Vector3d;
+
+/// The sheet as nodes on grid lines and two triangles a cell.
+class Sheet {
+ public:
+  explicit Sheet(const BlankState& blank)
+      : blank_(blank),
+        rows_(blank.nv + 1),
+        node_(static_cast<std::size_t>((blank.nu + 1) * rows_), -1),
+        spacing_{spacing_along(0), spacing_along(1)} {
+    for (std::size_t n = 0; n < blank.grid.size(); ++n)
+      node_[static_cast<std::size_t>(blank.grid[n][0] * rows_ + blank.grid[n][1])] = static_cast<int>(n);
+  }
+
+  int nodes() const { return static_cast<int>(blank_.grid.size()); }
+  int triangles() const { return 2 * static_cast<int>(blank_.quads.size()); }
+  double spacing() const { return std::max(spacing_[0], spacing_[1]); }
+  Vector3d at(int n) const { return Vector3d(blank_.position[static_cast<std::size_t>(n)].data()); }
+  std::array<int, 2> grid(int n) const { return blank_.grid[static_cast<std::size_t>(n)]; }
+
+  int node(int i, int j) const {
+    if (i < 0 || j < 0 || i > blank_.nu || j > blank_.nv) return -1;
+    return node_[static_cast<std::size_t>(i * rows_ + j)];
+  }
+  const std::array<int, 4>& cell_of(int triangle) const {
+    return blank_.quads[static_cast<std::size_t>(triangle / 2)];
+  }
+  std::array<int, 3> corners(int triangle) const {
+    const auto& q = cell_of(triangle);
+    return triangle % 2 == 0 ? std::array{q[0], q[1], q[2]} : std::array{q[0], q[2], q[3]};
+  }
+
+  /// Unit normal from the chords to the neighbours; zero where there is none.
+  Vector3d normal(int n) const {
+    const auto [i, j] = grid(n);
+    const auto chord = [&](int before, int after) -> Vector3d {
+      return at(after < 0 ? n : after) - at(before < 0 ? n : before);
+    };
+    const Vector3d m = chord(node(i - 1, j), node(i + 1, j)).cross(chord(node(i, j - 1), node(i, j + 1)));
+    const double length = m.norm();
+    return length > 0.0 ? Vector3d(m / length) : Vector3d::Zero();
+  }
+
+  /// Lines of the grid between a node and a cell: none if it is the cell's own.
+  std::array<int, 2> lines_between(int n, int triangle) const {
+    const auto [i, j] = grid(n);
+    const auto [ci, cj] = grid(cell_of(triangle)[0]);
+    return {std::max({ci - i, i - ci - 1, 0}), std::max({cj - j, j - cj - 1, 0})};
+  }
+  /// Distance between a node and a cell in the flat sheet [m].
+  double flat_distance(int n, int triangle) const {
+    const auto [di, dj] = lines_between(n, triangle);
+    return std::hypot(di * spacing_[0], dj * spacing_[1]);
+  }
+
+ private:
+  // Of the first cell: grids are regular.
+  double spacing_along(int direction) const {
+    if (blank_.quads.empty()) return 0.0;
+    const auto& q = blank_.quads.front();
+    const auto& a = blank_.reference[static_cast<std::size_t>(q[0])];
+    const auto& b = blank_.reference[static_cast<std::size_t>(direction == 0 ? q[1] : q[3])];
+    return std::hypot(b[0] - a[0], b[1] - a[1]);
+  }
+
+  const BlankState& blank_;
+  int rows_;
+  std::vector<int> node_;
+  std::array<double, 2> spacing_;
+};
+
+/// Boxes of a uniform grid and the triangles whose own boxes reach into them.
+class TriangleGrid {
+ public:
+  TriangleGrid(const Sheet& sheet, double side) : inverse_side_(1.0 / side) {
+    Vector3d low = sheet.at(0), high = low;
+    for (int n = 1; n < sheet.nodes(); ++n) {
+      low = low.cwiseMin(sheet.at(n));
+      high = high.cwiseMax(sheet.at(n));
+    }
+    low_ = low;
+    for (int c = 0; c < 3; ++c) count_[c] = 1 + static_cast<int>((high[c] - low[c]) * inverse_side_);
+    first_.assign(static_cast<std::size_t>(count_[0]) * count_[1] * count_[2] + 1, 0);
+    // Counted, then filled.
+    for (int t = 0; t < sheet.triangles(); ++t)
+      each_box(box_of(sheet, t), [&](std::size_t box) { ++first_[box + 1]; });
+    std::partial_sum(first_.begin(), first_.end(), first_.begin());
+    triangle_.resize(static_cast<std::size_t>(first_.back()));
+    std::vector<int> next(first_.begin(), first_.end() - 1);
+    for (int t = 0; t < sheet.triangles(); ++t)
+      each_box(box_of(sheet, t),
+               [&](std::size_t box) { triangle_[static_cast<std::size_t>(next[box]++)] = t; });
+  }
+
+  /// Triangles near a box given by two corners; one may come more than once.
+  template <class Visit>
+  void each_near(const Vector3d& low, const Vector3d& high, const Visit& visit) const {
+    each_box({low, high}, [&](std::size_t box) {
+      for (int k = first_[box]; k < first_[box + 1]; ++k) visit(triangle_[static_cast<std::size_t>(k)]);
+    });
+  }
+
+ private:
+  struct Box {
+    Vector3d low, high;
+  };
+  static Box box_of(const Sheet& sheet, int triangle) {
+    const auto [a, b, c] = sheet.corners(triangle);
+    const Vector3d x = sheet.at(a), y = sheet.at(b), z = sheet.at(c);
+    return {x.cwiseMin(y).cwiseMin(z), x.cwiseMax(y).cwiseMax(z)};
+  }
+  template <class Visit>
+  void each_box(const Box& box, const Visit& visit) const {
+    std::array<int, 3> from, to;
+    for (int c = 0; c < 3; ++c) {
+      from[c] = std::clamp(static_cast<int>((box.low[c] - low_[c]) * inverse_side_), 0, count_[c] - 1);
+      to[c] = std::clamp(static_cast<int>((box.high[c] - low_[c]) * inverse_side_), 0, count_[c] - 1);
+    }
+    for (int i = from[0]; i <= to[0]; ++i)
+      for (int j = from[1]; j <= to[1]; ++j)
+        for (int k = from[2]; k <= to[2]; ++k)
+          visit((static_cast<std::size_t>(i) * count_[1] + j) * count_[2] + k);
+  }
+
+  Vector3d low_;
+  double inverse_side_;
+  std::array<int, 3> count_{};
+  std::vector<int> first_, triangle_;
+};
+
+/// Distance of a point to a triangle (Ericson 2005, section 5.1.5).
+double distance_to(const Vector3d& p, const Vector3d& a, const Vector3d& b, const Vector3d& c) {
+  const Vector3d ab = b - a, ac = c - a, ap = p - a;
+  const double d1 = ab.dot(ap), d2 = ac.dot(ap);
+  if (d1 <= 0.0 && d2 <= 0.0) return ap.norm();
+  const Vector3d bp = p - b;
+  const double d3 = ab.dot(bp), d4 = ac.dot(bp);
+  if (d3 >= 0.0 && d4 <= d3) return bp.norm();
+  const double vc = d1 * d4 - d3 * d2;
+  if (vc <= 0.0 && d1 >= 0.0 && d3 <= 0.0) return (ap - d1 / (d1 - d3) * ab).norm();
+  const Vector3d cp = p - c;
+  const double d5 = ab.dot(cp), d6 = ac.dot(cp);
+  if (d6 >= 0.0 && d5 <= d6) return cp.norm();
+  const double vb = d5 * d2 - d1 * d6;
+  if (vb <= 0.0 && d2 >= 0.0 && d6 <= 0.0) return (ap - d2 / (d2 - d6) * ac).norm();
+  const double va = d3 * d6 - d5 * d4;
+  if (va <= 0.0 && d4 - d3 >= 0.0 && d5 - d6 >= 0.0)
+    return (bp - (d4 - d3) / ((d4 - d3) + (d5 - d6)) * (c - b)).norm();
+  const double sum = va + vb + vc;
+  return (ap - (vb / sum) * ab - (vc / sum) * ac).norm();
+}
+
+/// Whether the way from p to q passes through a triangle (Moeller & Trumbore 1997). One that lies in its
+/// plane does not.
+bool passes_through(const Vector3d& p, const Vector3d& q, const Vector3d& a, const Vector3d& b,
+                    const Vector3d& c) {
+  const Vector3d along = q - p, ab = b - a, ac = c - a;
+  const Vector3d h = along.cross(ac);
+  const double volume = ab.dot(h);
+  if (std::abs(volume) <= 1e-12 * along.norm() * ab.norm() * ac.norm()) return false;
+  const Vector3d ap = p - a;
+  const double u = ap.dot(h) / volume;
+  if (u < 0.0 || u > 1.0) return false;
+  const Vector3d k = ap.cross(ab);
+  const double v = along.dot(k) / volume;
+  if (v < 0.0 || u + v > 1.0) return false;
+  const double t = ac.dot(k) / volume;
+  return t >= 0.0 && t <= 1.0;
+}
+
+std::vector<double> turns(const Sheet& sheet) {
+  constexpr std::array<std::array<int, 2>, 4> ways{{{1, 0}, {0, 1}, {1, 1}, {1, -1}}};
+  std::vector<Vector3d> normal;
+  for (int n = 0; n < sheet.nodes(); ++n) normal.push_back(sheet.normal(n));
+  std::vector<double> least(normal.size(), 1.0);  // cosine
+  for (int n = 0; n < sheet.nodes(); ++n) {
+    const auto [i, j] = sheet.grid(n);
+    for (const auto& [u, v] : ways)
+      for (int k = 1; k <= fold_span; ++k) {
+        const int other = sheet.node(i + k * u, j + k * v);
+        if (other < 0) break;
+        const double cosine =
+            normal[static_cast<std::size_t>(n)].dot(normal[static_cast<std::size_t>(other)]);
+        if (normal[static_cast<std::size_t>(n)].isZero(0.0) ||
+            normal[static_cast<std::size_t>(other)].isZero(0.0))
+          continue;  // a node with neighbours along one tow only has none
+        for (const int end : {n, other})
+          least[static_cast<std::size_t>(end)] = std::min(least[static_cast<std::size_t>(end)], cosine);
+      }
+  }
+  for (double& value : least) value = std::acos(std::clamp(value, -1.0, 1.0));
+  return least;
+}
+
+double distance_to(const Sheet& sheet, const Vector3d& p, int triangle) {
+  const auto [a, b, c] = sheet.corners(triangle);
+  return distance_to(p, sheet.at(a), sheet.at(b), sheet.at(c));
+}
+
+// Nearest cell that is no neighbour, within `reach`.
+std::vector<double> distances(const Sheet& sheet, const TriangleGrid& triangles, double reach) {
+  const double neighbour = std::max(4.0 * sheet.spacing(), 4.0 * reach);
+  std::vector<double> nearest(static_cast<std::size_t>(sheet.nodes()), reach);
+  for (int n = 0; n < sheet.nodes(); ++n) {
+    const Vector3d p = sheet.at(n), around = Vector3d::Constant(reach);
+    double& best = nearest[static_cast<std::size_t>(n)];
+    triangles.each_near(p - around, p + around, [&](int t) {
+      if (sheet.flat_distance(n, t) < neighbour) return;
+      best = std::min(best, distance_to(sheet, p, t));
+    });
+  }
+  return nearest;
+}
+
+// Whether the segment from node n to node m passes through a cell that shares no node with it.
+bool crosses_sheet(const Sheet& sheet, const TriangleGrid& triangles, int n, int m) {
+  const Vector3d p = sheet.at(n), q = sheet.at(m);
+  bool crosses = false;
+  triangles.each_near(p.cwiseMin(q), p.cwiseMax(q), [&](int t) {
+    if (crosses) return;
+    for (const int end : {n, m})
+      if (sheet.lines_between(end, t) == std::array{0, 0}) return;
+    const auto [a, b, c] = sheet.corners(t);
+    crosses = passes_through(p, q, sheet.at(a), sheet.at(b), sheet.at(c));
+  });
+  return crosses;
+}
+
+/// Nodes that fold, are near or cross, joined where they are as close in the grid as the two sides of a fold.
+std::vector<FoldPlace> places(const Sheet& sheet, const Folds& folds, const std::vector<char>& marked) {
+  std::vector<FoldPlace> all;
+  std::vector<char> seen(marked.size(), 0);
+  for (int first = 0; first < sheet.nodes(); ++first) {
+    if (!marked[static_cast<std::size_t>(first)] || seen[static_cast<std::size_t>(first)]) continue;
+    FoldPlace place{.distance = folds.reach};
+    Vector3d sum = Vector3d::Zero();
+    std::vector<int> open{first};
+    seen[static_cast<std::size_t>(first)] = 1;
+    while (!open.empty()) {
+      const int n = open.back();
+      open.pop_back();
+      ++place.nodes;
+      sum += sheet.at(n);
+      place.turn = std::max(place.turn, folds.turn[static_cast<std::size_t>(n)]);
+      place.distance = std::min(place.distance, folds.distance[static_cast<std::size_t>(n)]);
+      const auto [i, j] = sheet.grid(n);
+      for (int u = -fold_span; u <= fold_span; ++u)
+        for (int v = -fold_span; v <= fold_span; ++v) {
+          const int next = sheet.node(i + u, j + v);
+          if (next < 0 || !marked[static_cast<std::size_t>(next)] || seen[static_cast<std::size_t>(next)])
+            continue;
+          seen[static_cast<std::size_t>(next)] = 1;
+          open.push_back(next);
+        }
+    }
+    sum /= place.nodes;
+    place.at = {sum.x(), sum.y(), sum.z()};
+    all.push_back(place);
+  }
+  std::stable_sort(all.begin(), all.end(), [](const auto& a, const auto& b) { return a.nodes > b.nodes; });
+  return all;
+}
+
+}  // namespace
+
+Folds find_folds(const BlankState& blank, double thickness) {
+  if (blank.position.size() != blank.grid.size() || blank.reference.size() != blank.grid.size())
+    throw std::invalid_argument("find_folds: one place in the grid, flat and formed, a node");
+  Folds folds;
+  folds.reach = thickness;
+  if (blank.quads.empty()) return folds;
+  const Sheet sheet(blank);
+  const TriangleGrid triangles(sheet, std::max(1.5 * sheet.spacing(), thickness));
+  folds.turn = turns(sheet);
+  folds.distance = distances(sheet, triangles, thickness);
+  std::vector<char> marked(folds.turn.size(), 0);
+  for (int n = 0; n < sheet.nodes(); ++n) {
+    const auto at = static_cast<std::size_t>(n);
+    folds.folded += folds.turn[at] > fold_turn;
+    folds.near += folds.distance[at] < thickness;
+    marked[at] = folds.turn[at] > fold_turn || folds.distance[at] < thickness;
+    const auto [i, j] = sheet.grid(n);
+    for (const int m : {sheet.node(i + 1, j), sheet.node(i, j + 1)}) {
+      if (m < 0 || !crosses_sheet(sheet, triangles, n, m)) continue;
+      ++folds.crossings;
+      marked[at] = marked[static_cast<std::size_t>(m)] = 1;
+    }
+  }
+  folds.place = places(sheet, folds, marked);
+  return folds;
+}
+
+}  // namespace heddle::macroscale
