@@ -127,7 +127,8 @@ Canvas ledger_chart(const Rows& history) {
     chart.band_style.push_back(entry.style);
   }
   Series work{"Work of the tools", {}, column(history, 1.0, &HistoryRow::work_punch)};
-  for (std::size_t i = 0; i < history.size(); ++i) work.y[i] += history[i].work_binder;
+  for (std::size_t i = 0; i < history.size(); ++i)
+    work.y[i] += history[i].work_binder + history[i].work_gravity;
   chart.lines = {std::move(work)};
   chart.width = full_width;
   chart.height = 400.0;
