@@ -190,8 +190,9 @@ Box reach_of_fabric(const StampingSpec& spec, Role role, const TriangleMesh& mes
     const auto [low, high] =
         std::minmax_element(outline.outer.begin(), outline.outer.end(),
                             [c](const Point2& a, const Point2& b) { return a[c] < b[c]; });
-    reach.low[c] = (*low)[c] - margin;
-    reach.high[c] = (*high)[c] + margin;
+    const double aside = std::abs(offset_of(spec, role)[static_cast<Eigen::Index>(c)]);
+    reach.low[c] = (*low)[c] - margin - aside;
+    reach.high[c] = (*high)[c] + margin + aside;
   }
   // The binder stays on the blank, the die below it; the punch is down by the stroke at its end.
   if (role == Role::die)
