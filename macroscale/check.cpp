@@ -6,6 +6,7 @@
 #include "macroscale/stamping.h"
 
 #include "macroscale/outline_cut.h"
+#include "macroscale/press_check.h"
 
 namespace heddle::macroscale {
 
@@ -138,6 +139,7 @@ Problems check(const StampingSpec& spec) {
   const auto& [blank, punch, die, binder, process, artefact, shear_rate, shear_friction, contact_pressure,
                contact_sites, compaction_follows_shear, heat] = spec;
   if (heat) f.add(thermal::check(*heat));
+  f.add(check_press(spec));
   const double die_edge = die.opening_radius + die.fillet;
   double edge = 0.0;
   std::vector<std::string> edges{"tools.die.file", "tools.binder.file"};

@@ -35,12 +35,14 @@ void each_number(Row& r, const Visit& visit) {
   visit("self_crossings", r.self_crossings);
   visit("work_punch", r.work_punch);
   visit("work_binder", r.work_binder);
+  visit("work_gravity", r.work_gravity);
   visit("energy_tow", r.energy_tow);
   visit("energy_shear", r.energy_shear);
   visit("energy_bending", r.energy_bending);
   visit("energy_twist", r.energy_twist);
   visit("energy_compaction", r.energy_compaction);
   visit("energy_kinetic", r.energy_kinetic);
+  visit("energy_press", r.energy_press);
   visit("friction_punch", r.friction_punch);
   visit("friction_die", r.friction_die);
   visit("friction_binder", r.friction_binder);
@@ -51,6 +53,7 @@ void each_number(Row& r, const Visit& visit) {
   visit("ledger_residual", r.ledger_residual);
   visit("force_balance", r.force_balance);
   visit("friction_work_outside", r.friction_work_outside);
+  visit("punch_deflection", r.punch_deflection);
 }
 
 static_assert(sizeof(HeatRow) == 10 * sizeof(double), "HeatRow has changed: keep its new members");
@@ -370,6 +373,10 @@ void write(Hdf5Writer& file, const std::string& group, const StampingCheckpoint&
   write_history(file, group + "/row", {checkpoint.row});
   write_history(file, group + "/history", checkpoint.history);
   write_heat_rows(file, group + "/hold", checkpoint.hold);
+  if (checkpoint.release) {
+    write_history(file, group + "/release/row", {checkpoint.release->row});
+    file.write(group + "/release/moved", checkpoint.release->moved);
+  }
   file.write(group + "/peak_force_balance", checkpoint.peak_force_balance);
   file.write(group + "/peak_pressure", checkpoint.peak_pressure);
   file.write(group + "/peak_swing", checkpoint.peak_swing);
@@ -390,6 +397,11 @@ StampingCheckpoint read_checkpoint(const Hdf5Reader& file, const std::string& gr
   checkpoint.row = row[0];
   checkpoint.history = read_history(file, group + "/history");
   checkpoint.hold = read_heat_rows(file, group + "/hold");
+  if (file.has(group + "/release/moved")) {
+    const auto released = read_history(file, group + "/release/row");
+    if (released.size() != 1) throw Hdf5Error(group + "/release/row is no single row");
+    checkpoint.release = Release{released[0], file.number(group + "/release/moved")};
+  }
   checkpoint.peak_force_balance = file.number(group + "/peak_force_balance");
   checkpoint.peak_pressure = file.number(group + "/peak_pressure");
   checkpoint.peak_swing = file.number(group + "/peak_swing");
@@ -402,8 +414,10 @@ StampingCheckpoint read_checkpoint(const Hdf5Reader& file, const std::string& gr
   return checkpoint;
 }
 
-std::string fault_of(const StampingCheckpoint& c, const Blank& blank, ContactSites sites, int steps) {
-  constexpr std::size_t tools = 3, loaded = 1;  // punch, die and binder; the binder is loaded
+std::string fault_of(const StampingCheckpoint& c, const Blank& blank, ContactSites sites, int steps,
+                     const StateSizes& sizes) {
+  const auto tools = static_cast<std::size_t>(sizes.tools);
+  const auto loaded = static_cast<std::size_t>(sizes.unknowns_of_tools);
   const std::size_t nodes = static_cast<std::size_t>(blank.nodes());
   const auto contacts = static_cast<std::size_t>(contact_count(blank, sites));
   const auto unknowns = static_cast<Eigen::Index>(3 * nodes + loaded);

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -23,6 +24,7 @@ struct StampingCheckpoint {
   int rejected_steps = 0, newton_iterations = 0, factorisations = 0;
   std::vector<HistoryRow> history;  ///< one row a step done
   std::vector<HeatRow> hold;        ///< after the last step, where there is a hold
+  std::optional<Release> release;   ///< after all, where there is one
   BlankState blank;                 ///< after it, for files and pictures
 };
 
@@ -36,7 +38,13 @@ void write_instant(Hdf5Writer& file, const std::string& group, const BlankState&
 /// @param shared  any instant of the same blank
 BlankState read_instant(const Hdf5Reader& file, const std::string& group, const BlankState& shared);
 
+/// What a state has to have, by the specification alone.
+struct StateSizes {
+  int tools = 0, unknowns_of_tools = 0;
+};
+
 /// Fault that keeps a checkpoint from being of a stamping of this blank in so many steps, or "".
-std::string fault_of(const StampingCheckpoint& checkpoint, const Blank& blank, ContactSites sites, int steps);
+std::string fault_of(const StampingCheckpoint& checkpoint, const Blank& blank, ContactSites sites, int steps,
+                     const StateSizes& sizes);
 
 }  // namespace heddle::macroscale

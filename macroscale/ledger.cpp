@@ -2,6 +2,8 @@
 
 #include <numeric>
 
+#include "macroscale/tool_drive.h"
+
 namespace heddle::macroscale {
 
 namespace {
@@ -90,6 +92,22 @@ Increment twist_increment(const System& system, const State& start, const State&
   return sum;
 }
 
+// Work on a tool with an unknown of its own, and what its spring took.
+void add_drive(const System& system, const State& start, const State& end, int k, StepLedger& ledger) {
+  const Tool& tool = system.scene().tools[k];
+  const double u0 = start.x[system.unknown_of(k)], u1 = end.x[system.unknown_of(k)];
+  const Drive before = drive_at(tool, u0), after = drive_at(tool, u1);
+  const double stored = after.spring_energy - before.spring_energy;
+  ledger.press += stored;
+  ledger.numerical += after.spring_force * (u1 - u0) - stored;
+  if (tool.motion == Motion::sprung) {
+    ledger.work_driven -= after.spring_force * (end.tool_z[k] - start.tool_z[k]);
+  } else {
+    ledger.work_loaded -= tool.force * (u1 - u0);
+    ledger.work_dead -= tool.weight * (u1 - u0);
+  }
+}
+
 }  // namespace
 
 double StepLedger::dissipated() const {
@@ -137,21 +155,22 @@ StepAccount account(const System& system, const StepData& step, const State& end
   const auto added_by_shear = [&](const Vector3d& x, int k, int i, double held) {
     if (reached.contact_shear.empty()) return 0.0;
     return system.contact_area(reached, i) *
-               system.contact_at(reached, x, k, i, end.tool_z[k]).normal.energy -
+               system.contact_at(reached, x, k, i, system.tool_position(end, k)).normal.energy -
            held;
   };
   const bool rubs = scene.friction && !step.frictionless;
   for (int k = 0; k < static_cast<int>(scene.tools.size()); ++k) {
     Vector3d on_tool = Vector3d::Zero();
     double rubbed = 0.0;
-    const double tool_motion = end.tool_z[k] - start.tool_z[k];
+    const double z0 = system.tool_position(start, k), z1 = system.tool_position(end, k);
+    const double tool_motion = z1 - z0;
     for (int i = 0; i < system.contacts(); ++i) {
       const double area = system.contact_area(step, i);
       const ContactPoint& at = system.contact_points()[i];
       const Vector3d x0 = at_point(at, start.x), x1 = at_point(at, end.x);
       const Vector3d step_of_point = x1 - x0 - Vector3d(0, 0, tool_motion);
-      const NormalContact c0 = system.contact_at(step, x0, k, i, start.tool_z[k]).normal;
-      const auto [d, c] = system.contact_at(step, x1, k, i, end.tool_z[k]);
+      const NormalContact c0 = system.contact_at(step, x0, k, i, z0).normal;
+      const auto [d, c] = system.contact_at(step, x1, k, i, z1);
       Vector3d gradient = -area * c.pressure * d.normal;
       compaction.stored += area * (c.energy - c0.energy) + added_by_shear(x1, k, i, area * c.energy);
       compaction.work += gradient.dot(step_of_point);
@@ -173,7 +192,7 @@ StepAccount account(const System& system, const StepData& step, const State& end
     result.forces.on_tool.push_back(on_tool);
     on_blank -= on_tool;
     if (scene.tools[k].motion == Motion::driven) ledger.work_driven -= on_tool.z() * tool_motion;
-    if (scene.tools[k].motion == Motion::loaded) ledger.work_loaded -= scene.tools[k].force * tool_motion;
+    if (has_unknown(scene.tools[k])) add_drive(system, start, end, k, ledger);
   }
   ledger.compaction = compaction.stored;
   ledger.numerical += compaction.work - compaction.stored;
@@ -187,7 +206,7 @@ StepAccount account(const System& system, const StepData& step, const State& end
     }
   for (std::size_t k = 0; k < scene.load.size(); ++k) {
     const Eigen::Index n = static_cast<Eigen::Index>(k);
-    ledger.work_held += scene.load[k] * (end.x[n] - start.x[n]);
+    ledger.work_dead += scene.load[k] * (end.x[n] - start.x[n]);
     on_blank[n % 3] += scene.load[k];
   }
   if (!scene.held.empty()) {

@@ -12,9 +12,11 @@ namespace heddle::macroscale {
 /// Where the energy of one step went [J]: work in, energy stored, energy dissipated. Each entry is computed
 /// for itself, from forces at the end of the step times increments; none is a remainder.
 struct StepLedger {
-  double work_driven = 0.0;  ///< by driven tools (the punch)
+  double work_driven = 0.0;  ///< by driven tools (the punch), or by the drive of sprung ones
   double work_loaded = 0.0;  ///< by forces on loaded tools (the binder)
-  double work_held = 0.0;    ///< by supports that move, and dead loads
+  double work_held = 0.0;    ///< by supports that move
+  double work_dead = 0.0;    ///< by dead loads on nodes and the weight of loaded tools
+  double press = 0.0;        ///< change of the energy in springs of tools
   double tow = 0.0, shear = 0.0, bending = 0.0, twist = 0.0, compaction = 0.0;  ///< change of stored energy
   double kinetic = 0.0;                                                         ///< change of kinetic energy
   std::vector<double> friction;                                                 ///< dissipated at each tool
@@ -24,9 +26,9 @@ struct StepLedger {
   double numerical = 0.0;  ///< of backward Euler: 1/2 |dv|^2_M and the second-order part of each stored term
   double friction_outside = 0.0;  ///< share of friction done outside the calibrated box [J]
 
-  double stored() const { return tow + shear + bending + twist + compaction + kinetic; }
+  double stored() const { return tow + shear + bending + twist + compaction + kinetic + press; }
   double dissipated() const;
-  double work() const { return work_driven + work_loaded + work_held; }
+  double work() const { return work_driven + work_loaded + work_held + work_dead; }
   double residual() const { return work() - stored() - dissipated(); }
 };
 

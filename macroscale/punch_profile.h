@@ -17,4 +17,10 @@ double stroke_at_time(const ProcessSpec& process, double time);
 /// Its inverse [s], for 0 <= travel <= stroke.
 double time_at_stroke(const ProcessSpec& process, double travel);
 
+/// Steps of the stroke and, where there is a dwell, those after it.
+int all_steps(const ProcessSpec& process);
+/// Time at a share of a step [s], 1 <= step <= all_steps: equal in stroke, then, while the tools stand still,
+/// growing from the mean step of the stroke.
+double time_at_step(const ProcessSpec& process, int step, double share);
+
 }  // namespace heddle::macroscale

@@ -211,9 +211,9 @@ double largest_draw_in(const Blank& blank, const State& state) {
 }
 
 double ledger_residual(const HistoryRow& r) {
-  const double work = r.work_punch + r.work_binder;
+  const double work = r.work_punch + r.work_binder + r.work_gravity;
   const double stored = r.energy_tow + r.energy_shear + r.energy_bending + r.energy_twist +
-                        r.energy_compaction + r.energy_kinetic;
+                        r.energy_compaction + r.energy_kinetic + r.energy_press;
   const double dissipated = r.friction_punch + r.friction_die + r.friction_binder + r.dissipation_shear_rate +
                             r.dissipation_shear_hysteresis + r.dissipation_artefact + r.dissipation_numerical;
   return work - stored - dissipated;

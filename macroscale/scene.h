@@ -39,21 +39,21 @@ struct Scene {
   bool compaction_follows_shear = false;  ///< else the table of gamma = 0 on initial areas
   std::optional<HeatModel> heat;          ///< absent: one temperature a run
 
-  int loaded_tools() const {
+  int loaded_tools() const {  ///< those with an unknown of their own
     int n = 0;
-    for (const Tool& tool : tools) n += tool.motion == Motion::loaded;
+    for (const Tool& tool : tools) n += has_unknown(tool);
     return n;
   }
   int unknowns() const { return 3 * blank.nodes() + loaded_tools(); }
 };
 
-/// Where everything is at one instant. Unknowns: 3 a node (x, y, z), then one z a loaded tool.
+/// Where everything is at one instant. Unknowns: 3 a node (x, y, z), then one a loaded (z) or sprung tool.
 struct State {
-  double time = 0.0;                      ///< [s]
-  Eigen::VectorXd x;                      ///< positions [m]
-  Eigen::VectorXd v;                      ///< velocities [m/s]
-  std::vector<double> tool_z;             ///< displacement of each tool along z [m]
-  std::vector<double> corner_angle;       ///< gamma of each corner, 4 a quad [rad]
+  double time = 0.0;           ///< [s]
+  Eigen::VectorXd x;           ///< positions [m]
+  Eigen::VectorXd v;           ///< velocities [m/s]
+  std::vector<double> tool_z;  ///< displacement of each tool along z; of a sprung tool that of its drive [m]
+  std::vector<double> corner_angle;                         ///< gamma of each corner, 4 a quad [rad]
   std::vector<ShearMemory> shear_memory;  ///< of each corner; empty: no friction between tows
   std::vector<std::vector<friction::ContactState>> memory;  ///< per tool, per contact point
   BlankHeat heat;                                           ///< empty: one temperature a run

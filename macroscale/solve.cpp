@@ -47,7 +47,8 @@ ContactScale contact_scale(const System& system, const StepData& step, const Vec
       const double p = system.tool_contact(step, x, k, i).normal.pressure;
       if (p <= 0.0) continue;
       sum += p * system.contact_area(step, i);
-      if (scene.tools[k].motion == Motion::driven) scale.driven += p * system.contact_area(step, i);
+      if (scene.tools[k].motion == Motion::driven || scene.tools[k].motion == Motion::sprung)
+        scale.driven += p * system.contact_area(step, i);
       ++touching;
     }
   // A node feels as many contact points as there are for one node.
@@ -74,7 +75,8 @@ void place(const System& system, const StepData& step, const VectorXd& x, State&
   end.v = (x - start.x) / step.dt;
   end.tool_z.resize(scene.tools.size());
   for (int k = 0; k < static_cast<int>(scene.tools.size()); ++k)
-    end.tool_z[k] = system.tool_position(step, x, k);
+    end.tool_z[k] =
+        scene.tools[k].motion == Motion::sprung ? step.tool_z[k] : system.tool_position(step, x, k);
   end.corner_angle = corner_angles(scene.blank, end);
   end.shear_memory = start.shear_memory;
   for (std::size_t k = 0; k < end.shear_memory.size(); ++k)

@@ -7,10 +7,12 @@
 #include <fmt/format.h>
 
 #include "macroscale/checkpoint.h"
-#include "macroscale/folds.h"
+#include "macroscale/closing.h"
+#include "macroscale/history_row.h"
 #include "macroscale/ledger.h"
 #include "macroscale/punch_profile.h"
 #include "macroscale/quality.h"
+#include "macroscale/release.h"
 #include "macroscale/scene.h"
 #include "macroscale/solve.h"
 #include "macroscale/stamping_scene.h"
@@ -20,84 +22,18 @@ namespace heddle::macroscale {
 
 namespace {
 
-constexpr int punch = 0, die = 1, binder = 2;  // order of the tools in the scene
-
-// Rest under the binder force before the punch moves: the fabric is pressed through its thickness and stays
-// where it was laid, held in its plane as the friction to come would hold it. (Free, it would drift along
-// tools whose surfaces are triangles; held by friction, the start of a run would move with the lag of the
-// friction.) Only the edges of the rings are off balance, so residuals are small from the start and the
-// tolerance must be as well. Velocities are taken out after each step.
-StepSummary close_binder(Scene& scene, System& system, const SolveOptions& options, State& state,
-                         StepData& step) {
-  constexpr double dt = 0.02;  // [s]
-  constexpr int steps = 4;     // each leaves about a third of the motion of the one before
-  SolveOptions closing = options;
-  closing.frictionless = true;
-  closing.force_tolerance = 1e-6;
-  closing.relative_tolerance = 1e-6;
-  scene.held.assign(3 * scene.blank.nodes(), 0);
-  for (int i = 0; i < scene.blank.nodes(); ++i) scene.held[3 * i] = scene.held[3 * i + 1] = 1;
-  StepSummary summary;
-  int iterations = 0;
-  for (int k = 0; k < steps; ++k) {
-    State end;
-    summary = advance(system, state, dt, state.tool_z, {}, closing, end, step);
-    iterations += summary.newton_iterations;
-    if (!summary.converged) break;
-    state = std::move(end);
-    state.v.setZero();
-    state.time = 0.0;
-  }
-  scene.held.clear();
-  summary.newton_iterations = iterations;
-  return summary;
-}
-
-void add_to_history(HistoryRow& row, const StepAccount& account) {
-  const StepLedger& l = account.ledger;
-  row.work_punch += l.work_driven;
-  row.work_binder += l.work_loaded;
-  row.energy_tow += l.tow;
-  row.energy_shear += l.shear;
-  row.energy_bending += l.bending;
-  row.energy_twist += l.twist;
-  row.energy_compaction += l.compaction;
-  row.energy_kinetic += l.kinetic;
-  row.friction_punch += l.friction[punch];
-  row.friction_die += l.friction[die];
-  row.friction_binder += l.friction[binder];
-  row.dissipation_shear_rate += l.shear_rate;
-  row.dissipation_shear_hysteresis += l.shear_hysteresis;
-  row.dissipation_artefact += l.artefact;
-  row.dissipation_numerical += l.numerical;
-  row.ledger_residual = ledger_residual(row);
-  row.friction_work_outside += l.friction_outside;
-  row.punch_force = account.forces.on_tool[punch].z();
-  row.die_force = account.forces.on_tool[die].z();
-  row.binder_force = account.forces.on_tool[binder].z();
-  row.force_balance = std::max(row.force_balance, account.forces.imbalance);
-}
-
-void finish_row(HistoryRow& row, const BlankState& blank, const State& state, const Scene& scene) {
-  row.time = state.time;
-  row.punch_displacement = -state.tool_z[punch];
-  row.draw_in_max = largest_draw_in(scene.blank, state);
-  row.shear_angle_max = 0.0;
-  for (double angle : blank.shear_angle) row.shear_angle_max = std::max(row.shear_angle_max, std::abs(angle));
-  if (scene.heat) row.heat = heat_row(scene, state.heat, state.time);
-  row.tow_strain_max = 0.0;
-  for (const auto& strain : blank.tow_strain)
-    row.tow_strain_max = std::max({row.tow_strain_max, strain[0], strain[1]});
-  const Folds folds = find_folds(blank, scene.fabric->thickness);
-  row.folded_nodes = folds.folded;
-  row.near_nodes = folds.near;
-  row.self_crossings = folds.crossings;
-}
+constexpr int punch = 0;  // in the scene; die and binder may be several tools
 
 // Parts of one step: no more tool motion at once than contact can follow.
 int parts_of_step(const StampingSpec& spec, double thickness, double spacing) {
   const double limit = std::min({0.5 * spec.die.fillet, thickness, 1.25 * spacing});
   return std::max(1, static_cast<int>(std::ceil(spec.process.stroke / spec.process.steps / limit - 1e-9)));
+}
+
+// Creep while sticking grows with the time at rest: as little over the dwell as over the stroke, 2e-4 of it
+// at most.
+double smoothing_of_dwell(const ProcessSpec& process, double of_stroke) {
+  return std::min(of_stroke, 2e-4 * process.stroke / process.press.dwell);
 }
 
 // How a step, or the whole run, ended.
@@ -138,9 +74,16 @@ void describe_iterate(StampingFailure& failure, const System& system, const Step
   }
 }
 
+// Whether the press has the eight symmetries of the square that a blank may have.
+bool is_symmetric(const StampingSpec& spec) {
+  const PressSpec& press = spec.process.press;
+  const bool straight = press.punch_offset[0] == 0.0 && press.punch_offset[1] == 0.0;
+  return straight && press.binder_tilt == 0.0 && spec.binder.sectors == 1;
+}
+
 // What a checkpoint says of the run, as its result.
-void take_over(StampingResult& result, const Blank& blank, const mesoscale::FabricProperties& fabric,
-               StampingCheckpoint at) {
+void take_over(StampingResult& result, const StampingSpec& spec, const Blank& blank,
+               const mesoscale::FabricProperties& fabric, StampingCheckpoint at) {
   const double last_table_pressure = fabric.compaction.curves().front().y().back();  // of every trellis angle
   StampingSummary& s = result.summary;
   s.nodes = blank.nodes();
@@ -154,8 +97,10 @@ void take_over(StampingResult& result, const Blank& blank, const mesoscale::Fabr
   s.friction_swing = at.peak_swing;
   result.history = std::move(at.history);
   result.hold = std::move(at.hold);
+  s.release = std::move(at.release);
   result.final_state = std::move(at.blank);
   summarise(result, blank, at.state, at.peak_force_balance);
+  if (!is_symmetric(spec)) s.symmetry_gap_shear = s.symmetry_gap_draw_in = -1.0;
 }
 
 void refuse(const std::string& fault) {
@@ -166,10 +111,10 @@ void refuse(const std::string& fault) {
 StampingResult result_of(const StampingSpec& spec, const mesoscale::FabricProperties& fabric,
                          const StampingCheckpoint& last) {
   const Blank blank = make_blank(outline_of(spec.blank), spec.blank.spacing, spec.blank.orientation);
-  refuse(fault_of(last, blank, spec.contact_sites, spec.process.steps));
+  refuse(fault_of(last, blank, spec.contact_sites, all_steps(spec.process), state_sizes(spec)));
   StampingResult result;
   result.summary.completed = true;
-  take_over(result, blank, fabric, last);
+  take_over(result, spec, blank, fabric, last);
   return result;
 }
 
@@ -182,6 +127,8 @@ class Run {
     // A nodal residual is small beside the binder's share of a node as well: under 5 N a millinewton is not.
     options_.force_tolerance =
         std::min(options_.force_tolerance, 1e-2 * spec.process.binder_force / scene_.blank.nodes());
+    if (spec.process.press.gravity)
+      options_.force_tolerance = std::min(options_.force_tolerance, 1e-2 * mean_weight(scene_));
     now_.state = initial_state(scene_);
     now_.blank = blank_state(system_, now_.state, nullptr);
   }
@@ -194,6 +141,7 @@ class Run {
     try {
       ending = drive();
       if (ending == Ending::done) ending = hold();
+      if (ending == Ending::done) ending = release();
     } catch (const NumericalError& error) {
       reason_ = error.what();
       kind_ = FailureKind::not_finite;
@@ -211,7 +159,7 @@ class Run {
     if (begun != Ending::done) return begun;
     const int parts = parts_of_step(spec_, scene_.fabric->thickness,
                                     std::max(scene_.blank.spacing[0], scene_.blank.spacing[1]));
-    while (now_.step < spec_.process.steps) {
+    while (now_.step < all_steps(spec_.process)) {
       const Ending ending = advance_to(now_.step + 1, parts);
       if (ending != Ending::done) return ending;
     }
@@ -220,20 +168,28 @@ class Run {
 
   Ending begin() {
     const StepSummary closed = close_binder(scene_, system_, options_, now_.state, attempt_);
-    if (closed.stopped) return Ending::stopped;
-    if (!closed.converged) {
-      reason_ = "closing the binder: " + closed.reason;
-      kind_ = closed.kind;
-      return Ending::failed;
+    if (Ending ending = begun(closed, "closing the binder"); ending != Ending::done) return ending;
+    if (spec_.process.press.gravity) {
+      const StepSummary settled = settle(scene_, system_, options_, now_.state, attempt_);
+      if (Ending ending = begun(settled, "sagging"); ending != Ending::done) return ending;
     }
     now_.blank = blank_state(system_, now_.state, nullptr);
-    finish_row(now_.row, now_.blank, now_.state, scene_);
+    finish_row(now_.row, now_.blank, now_.state, system_);
     show_and_keep();
     return Ending::done;
   }
 
+  Ending begun(const StepSummary& summary, const char* what) {
+    if (summary.stopped) return Ending::stopped;
+    if (summary.converged) return Ending::done;
+    reason_ = fmt::format("{}: {}", what, summary.reason);
+    kind_ = summary.kind;
+    return Ending::failed;
+  }
+
   Ending resume(const StampingCheckpoint& checkpoint) {
-    refuse(fault_of(checkpoint, scene_.blank, scene_.contact_sites, spec_.process.steps));
+    refuse(fault_of(checkpoint, scene_.blank, scene_.contact_sites, all_steps(spec_.process),
+                    state_sizes(spec_)));
     if (scene_.heat.has_value() == checkpoint.state.heat.empty())
       refuse(scene_.heat ? "it has no temperatures" : "it has temperatures");
     if (scene_.shear_friction.on() == checkpoint.state.shear_memory.empty())
@@ -248,11 +204,12 @@ class Run {
   Ending advance_to(int step, int parts) {
     now_.row.newton_iterations = now_.row.lag_iterations = 0;
     now_.row.force_balance = 0.0;
-    const double stroke = spec_.process.stroke / spec_.process.steps;
-    long pieces = parts, done = 0;
+    const bool dwells = step > spec_.process.steps;
+    if (dwells) scene_.slip_smoothing = smoothing_of_dwell(spec_.process, scene_.slip_smoothing);
+    long pieces = dwells ? 1 : parts, done = 0;
     while (done < pieces) {
       const double share = static_cast<double>(done + 1) / static_cast<double>(pieces);
-      const double next = time_at_stroke(spec_.process, stroke * (step - 1 + share));
+      const double next = time_at_step(spec_.process, step, share);
       const Ending ending = advance_part(next - now_.state.time, next);
       if (ending == Ending::stopped) return ending;
       if (ending == Ending::done) {
@@ -268,7 +225,7 @@ class Run {
       done *= 2;
       if (next - now_.state.time < 2e-7) {
         reason_ = fmt::format("step {} of {} (punch at {:.2f} mm): {}; the time step fell below 1e-7 s", step,
-                              spec_.process.steps, -1e3 * now_.state.tool_z[punch], reason_);
+                              all_steps(spec_.process), -1e3 * now_.state.tool_z[punch], reason_);
         return Ending::failed;
       }
     }
@@ -298,17 +255,31 @@ class Run {
     return Ending::done;
   }
 
+  // Punch and binder go up at once, and the blank comes to rest on the die. Not a step of the run: a run that
+  // is interrupted here does all of it again.
+  Ending release() {
+    if (!spec_.process.press.release || now_.release) return Ending::done;
+    Released released = release_blank(scene_, system_, now_.state, now_.row, options_);
+    now_.newton_iterations += released.summary.newton_iterations;
+    now_.factorisations += released.summary.factorisations;
+    if (Ending ending = begun(released.summary, "release"); ending != Ending::done) return ending;
+    now_.peak_force_balance = std::max(now_.peak_force_balance, released.release.row.force_balance);
+    now_.release = released.release;
+    now_.blank = std::move(released.blank);
+    return Ending::done;
+  }
+
   void close_row() {
     now_.blank = blank_state(system_, now_.state, &last_step_);
     last_step_ = {};  // hundreds of bytes a node that nothing reads any more
     start_ = {};
-    finish_row(now_.row, now_.blank, now_.state, scene_);
+    finish_row(now_.row, now_.blank, now_.state, system_);
     now_.history.push_back(now_.row);
   }
 
   // The observer comes first: what it writes belongs to the step that a checkpoint says is done.
   void show_and_keep() {
-    if (control_.observe) control_.observe(now_.step, spec_.process.steps, now_.row, now_.blank);
+    if (control_.observe) control_.observe(now_.step, all_steps(spec_.process), now_.row, now_.blank);
     whole_ = now_;
     keep(now_, false);
   }
@@ -332,7 +303,7 @@ class Run {
       kind_ = summary.kind;
       return Ending::failed;
     }
-    add_to_history(now_.row, account(system_, attempt_, end));
+    add_to_history(now_.row, account(system_, attempt_, end), scene_);
     now_.peak_pressure = std::max(now_.peak_pressure, largest_pressure(system_, attempt_, end));
     if (summary.swings) now_.peak_swing = std::max(now_.peak_swing, summary.lag_residual);
     now_.falling_branch |= on_falling_branch(system_, attempt_, end);
@@ -387,7 +358,7 @@ class Run {
   }
 
   StampingResult finish() {
-    take_over(result_, scene_.blank, *scene_.fabric, std::move(now_));
+    take_over(result_, spec_, scene_.blank, *scene_.fabric, std::move(now_));
     return std::move(result_);
   }
 
@@ -434,10 +405,12 @@ StampingResult run_stamping(const StampingSpec& spec, const mesoscale::FabricPro
     problems.insert(problems.end(), of_heat.begin(), of_heat.end());
   }
   if (!problems.empty()) throw InputError(std::move(problems));
-  const bool held = spec.process.hold == 0.0 || (control.resume_from && !control.resume_from->hold.empty());
-  if (control.resume_from && control.resume_from->step == spec.process.steps && held) {
-    if (control.keep) control.keep(*control.resume_from, true);
-    return result_of(spec, fabric, *control.resume_from);
+  const StampingCheckpoint* from = control.resume_from;
+  const bool held = spec.process.hold == 0.0 || (from && !from->hold.empty());
+  const bool released = !spec.process.press.release || (from && from->release);
+  if (from && from->step == all_steps(spec.process) && held && released) {
+    if (control.keep) control.keep(*from, true);
+    return result_of(spec, fabric, *from);
   }
   for (const auto* file : {&spec.punch.file, &spec.die.file, &spec.binder.file})
     if (*file && !(*file)->loaded) throw std::logic_error("run_stamping: a tool file was not loaded");

@@ -14,6 +14,7 @@
 #include "friction/model.h"
 #include "macroscale/cell_piece.h"
 #include "macroscale/outline.h"
+#include "macroscale/press.h"
 #include "macroscale/shear_friction.h"
 #include "macroscale/thermal/blank_heat.h"
 #include "macroscale/tool_file.h"
@@ -55,15 +56,28 @@ struct PunchSpec {                   ///< hemisphere with its apex down and a cy
   double radius = 0.070;             ///< [m]
   std::optional<ToolFileSpec> file;  ///< then the numbers of the shape are not used
 };
+/// What lies below the opening of a die: nothing, a level floor, or a bowl of the opening's radius.
+enum class DieBottom { open, flat, bowl };
+
 struct DieSpec {                  ///< plate with a round opening and a filleted edge
   double opening_radius = 0.072;  ///< [m]
   double fillet = 0.020;          ///< [m]
+  DieBottom bottom = DieBottom::open;
+  double depth = 0.0;  ///< of the bottom's lowest point below the die's face [m]
   std::optional<ToolFileSpec> file;
 };
+/// What holds the binder: its force, or stops that keep its face at a gap from the die's.
+enum class BinderControl { force, gap };
+
 struct BinderSpec {             ///< flat ring under force, free to move in z
   double inner_radius = 0.092;  ///< [m]
   double edge_fillet = 2e-3;    ///< [m], keeps contact smooth where fabric leaves it
   double mass = 20.0;           ///< [kg]
+  BinderControl control = BinderControl::force;
+  double gap = 0.0;  ///< between the faces of binder and die, for BinderControl::gap [m]
+  double stiffness =
+      0.0;          ///< of the springs behind the binder: its force grows by this as it is lifted [N/m]
+  int sectors = 1;  ///< equal ones, each with its share of force, springs and mass, free by itself
   std::optional<ToolFileSpec> file;
 };
 
@@ -81,6 +95,7 @@ struct ProcessSpec {
   double hold = 0.0;  ///< longest time that the tools stay closed after the stroke, until no melt is left [s]
   double tool_temperature = 358.15;   ///< [K]
   double blank_temperature = 453.15;  ///< [K]
+  PressSpec press;
 };
 
 /// Non-physical helps. Off here; a report that used one says so.
@@ -114,7 +129,7 @@ struct StampingSpec {
 /// One accepted step: a row of history.csv. Energies are cumulative since the punch touched [J].
 struct HistoryRow {
   double time = 0.0;                                              ///< [s]
-  double punch_displacement = 0.0;                                ///< [m], downwards positive
+  double punch_displacement = 0.0;                                ///< of its drive [m], downwards positive
   double punch_force = 0.0, die_force = 0.0, binder_force = 0.0;  ///< [N]; punch: pushing positive
   double draw_in_max = 0.0;                                       ///< along the outline [m]
   double shear_angle_max = 0.0;                                   ///< [rad]
@@ -123,15 +138,18 @@ struct HistoryRow {
   int lag_iterations = 0;
   int folded_nodes = 0, near_nodes = 0, self_crossings = 0;  ///< of macroscale/folds.h
   double work_punch = 0.0, work_binder = 0.0;
+  double work_gravity = 0.0;  ///< by the weight of fabric and binder
   double energy_tow = 0.0, energy_shear = 0.0, energy_bending = 0.0, energy_twist = 0.0,
          energy_compaction = 0.0;
   double energy_kinetic = 0.0;
+  double energy_press = 0.0;  ///< in the frame of the press and the springs of the binder
   double friction_punch = 0.0, friction_die = 0.0, friction_binder = 0.0;
   double dissipation_shear_hysteresis = 0.0;  ///< friction between tows
   double dissipation_shear_rate = 0.0, dissipation_artefact = 0.0, dissipation_numerical = 0.0;
   double ledger_residual = 0.0;        ///< what the columns above leave over [J]
   double force_balance = 0.0;          ///< |sum F - sum m a| [N]
   double friction_work_outside = 0.0;  ///< done outside the calibrated box [J]
+  double punch_deflection = 0.0;       ///< how far the punch stays behind punch_displacement, its drive's [m]
   std::optional<HeatRow> heat;         ///< of a run with temperatures
 };
 
@@ -172,6 +190,12 @@ struct HeatSummary {
   double held = 0.0;  ///< how long the tools stayed closed after the stroke [s]
 };
 
+/// The blank once punch and binder have gone up and it has come to rest on the die.
+struct Release {
+  HistoryRow row;      ///< the ledger goes on; work_punch and work_binder take back what the tools gave up
+  double moved = 0.0;  ///< largest way of a node [m]
+};
+
 struct StampingSummary {
   double peak_punch_force = 0.0;            ///< [N]
   double shear_angle_max = 0.0;             ///< [rad]
@@ -200,6 +224,7 @@ struct StampingSummary {
   bool stopped = false;             ///< from outside, between two Newton iterations; no failure
   std::string failure;              ///< why it stopped, when not completed
   std::optional<HeatSummary> heat;  ///< of a run with temperatures
+  std::optional<Release> release;
 };
 
 /// What ended a step, by the cure it asks for (macroscale/advice.h).
@@ -234,9 +259,9 @@ struct StampingFailure {
 
 struct StampingResult {
   StampingSummary summary;
-  std::vector<HistoryRow> history;
-  std::vector<HeatRow> hold;  ///< while the tools stayed closed after the stroke
-  BlankState final_state;
+  std::vector<HistoryRow> history;         ///< one a step of the stroke, then those of the dwell
+  std::vector<HeatRow> hold;               ///< while the tools stayed closed after the stroke
+  BlankState final_state;                  ///< released, where the press releases it
   std::optional<StampingFailure> failure;  ///< present where summary.failure is
 };
 

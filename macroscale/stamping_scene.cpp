@@ -1,12 +1,74 @@
 #include "macroscale/stamping_scene.h"
 
 #include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <utility>
 
+#include <Eigen/Geometry>
+
+#include "macroscale/closing.h"
 #include "macroscale/contact.h"
 #include "macroscale/punch_profile.h"
 #include "macroscale/tool_set.h"
 
 namespace heddle::macroscale {
+
+namespace {
+
+using Eigen::Vector3d;
+
+// A press that yields at a force without giving way below it: as stiff as a frame can be told from rigid.
+constexpr double rigid_compliance = 1e-9;  // [m/N]
+
+Tool punch_of(const PressSpec& press, const Shape& shape) {
+  if (press.compliance == 0.0 && press.force_limit == 0.0)
+    return {Role::punch, shape, Motion::driven, 0.0, 0.0};
+  Tool punch{Role::punch, shape, Motion::sprung, 0.0, 0.0};
+  punch.stiffness = 1.0 / std::max(press.compliance, press.force_limit > 0.0 ? rigid_compliance : 0.0);
+  punch.yield = press.force_limit;
+  return punch;
+}
+
+// About the punch's axis, at the height of the binder's face.
+std::optional<Turn> tilt_of(const PressSpec& press, double face) {
+  if (press.binder_tilt == 0.0) return {};
+  const Vector3d axis(std::cos(press.binder_tilt_axis), std::sin(press.binder_tilt_axis), 0.0);
+  return Turn{Eigen::AngleAxisd(press.binder_tilt, axis).toRotationMatrix(), Vector3d(0.0, 0.0, face)};
+}
+
+// Equal sectors, the first one about the x axis: the symmetries of the square stay those of four and eight.
+Shape sector(const StampingSpec& spec, int k, double face) {
+  const double width = 2.0 * std::numbers::pi / spec.binder.sectors;
+  return SectorShape{face, spec.binder.inner_radius, spec.binder.edge_fillet, (k - 0.5) * width,
+                     (k + 0.5) * width};
+}
+
+std::vector<Tool> binders_of(const StampingSpec& spec, const Shape& whole, double face, double weight) {
+  const BinderSpec& binder = spec.binder;
+  const double share = 1.0 / binder.sectors;
+  std::vector<Tool> tools;
+  for (int k = 0; k < binder.sectors; ++k) {
+    Tool tool{Role::binder,        binder.sectors > 1 ? sector(spec, k, face) : raised(whole, face),
+              Motion::loaded,      share * spec.process.binder_force,
+              share * binder.mass, share * weight};
+    if (binder.control == BinderControl::gap) tool = {Role::binder, tool.shape, Motion::fixed};
+    if (tool.motion == Motion::loaded) tool.stiffness = share * binder.stiffness;
+    tool.turn = tilt_of(spec.process.press, face);
+    tools.push_back(tool);
+  }
+  return tools;
+}
+
+// How far above the blank's middle the binder's face stands once it has closed on the flat blank; the die's
+// stands as far below.
+double closed_half(const StampingSpec& spec, const mesoscale::FabricProperties& fabric, double weight) {
+  if (spec.binder.control == BinderControl::gap) return 0.5 * spec.binder.gap;
+  const double pressure = (spec.process.binder_force + weight) / binder_area(spec);
+  return 0.5 * fabric.thickness - approach_at(fabric.compaction.curves().front(), pressure);
+}
+
+}  // namespace
 
 // Die and binder stand where they have closed on a flat blank, so that its midplane is at z = 0 and the punch
 // touches it at t = 0 whatever the binder force.
@@ -16,14 +78,19 @@ Scene stamping_scene(const StampingSpec& spec, const mesoscale::FabricProperties
   scene.blank = make_blank(outline_of(spec.blank), spec.blank.spacing, spec.blank.orientation);
   scene.fabric = &fabric;
   scene.friction = &friction;
+  const PressSpec& press = spec.process.press;
   const double half = 0.5 * fabric.thickness;
   const TouchingTools tools = touching_tools(spec);
-  const double pressure = spec.process.binder_force / binder_area(spec);
-  const double closed = half - approach_at(fabric.compaction.curves().front(), pressure);
-  scene.tools = {{Role::punch, raised(tools.punch, half), Motion::driven, 0.0, 0.0},
-                 {Role::die, raised(tools.die, -closed), Motion::fixed, 0.0, 0.0},
-                 {Role::binder, raised(tools.binder, closed), Motion::loaded, spec.process.binder_force,
-                  spec.binder.mass}};
+  const double weight = press.gravity ? standard_gravity * spec.binder.mass : 0.0;
+  const double closed = closed_half(spec, fabric, weight);
+  scene.tools = {punch_of(press, raised(tools.punch, half)),
+                 {Role::die, raised(tools.die, -closed), Motion::fixed, 0.0, 0.0}};
+  if (spec.die.bottom == DieBottom::flat)
+    scene.tools.push_back(
+        {Role::die, PlaneShape{Vector3d(0.0, 0.0, -closed - spec.die.depth)}, Motion::fixed, 0.0, 0.0});
+  for (Tool& binder : binders_of(spec, tools.binder, closed, weight))
+    scene.tools.push_back(std::move(binder));
+  if (press.gravity) scene.load = weight_of_fabric(scene);
   scene.blank_temperature = spec.process.blank_temperature;
   scene.tool_temperature = spec.process.tool_temperature;
   // Smoothing follows the punch speed, so a rate-free law stays rate-free; creep while sticking is below
@@ -38,6 +105,14 @@ Scene stamping_scene(const StampingSpec& spec, const mesoscale::FabricProperties
   scene.compaction_follows_shear = spec.compaction_follows_shear;
   if (spec.thermal) scene.heat = heat_model(*spec.thermal, fabric.areal_density, scene.blank_temperature);
   return scene;
+}
+
+StateSizes state_sizes(const StampingSpec& spec) {
+  const PressSpec& press = spec.process.press;
+  const bool sprung = press.compliance > 0.0 || press.force_limit > 0.0;
+  const bool loaded = spec.binder.control == BinderControl::force;
+  const int dies = spec.die.bottom == DieBottom::flat ? 2 : 1;
+  return {1 + dies + spec.binder.sectors, (sprung ? 1 : 0) + (loaded ? spec.binder.sectors : 0)};
 }
 
 }  // namespace heddle::macroscale

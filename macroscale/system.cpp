@@ -8,6 +8,8 @@
 #include <tbb/parallel_for.h>
 #include <tbb/parallel_reduce.h>
 
+#include "macroscale/tool_drive.h"
+
 namespace heddle::macroscale {
 
 namespace {
@@ -64,8 +66,8 @@ System::System(const Scene& scene)
     for (int c = 0; c < 3; ++c) mass_[3 * i + c] = density * scene.blank.node_area[i];
   int next = 3 * scene.blank.nodes();
   for (const Tool& tool : scene.tools) {
-    body_.push_back(tool.motion == Motion::loaded ? next : -1);
-    if (tool.motion == Motion::loaded) mass_[next++] = tool.mass;
+    body_.push_back(has_unknown(tool) ? next : -1);
+    if (has_unknown(tool)) mass_[next++] = tool.mass;
   }
   build_pattern();
   assemble_constant();
@@ -84,12 +86,17 @@ double System::twist_stiffness(int quad) const {
 }
 
 double System::tool_position(const StepData& step, const VectorXd& x, int k) const {
-  return body_[k] >= 0 ? x[body_[k]] : step.tool_z[k];
+  if (body_[k] < 0) return step.tool_z[k];
+  return scene_.tools[k].motion == Motion::sprung ? step.tool_z[k] + x[body_[k]] : x[body_[k]];
+}
+
+double System::tool_position(const State& state, int k) const {
+  return scene_.tools[k].motion == Motion::sprung ? state.tool_z[k] + state.x[body_[k]] : state.tool_z[k];
 }
 
 ToolContact System::contact_at(const Vector3d& x, int k, double z) const {
   ToolContact contact;
-  contact.surface = distance(scene_.tools[k].shape, x - Vector3d(0, 0, z));
+  contact.surface = distance(scene_.tools[k], x - Vector3d(0, 0, z));
   contact.normal = normal_contact(compaction_, contact.surface.distance, 0.5 * scene_.fabric->thickness);
   return contact;
 }
@@ -97,7 +104,7 @@ ToolContact System::contact_at(const Vector3d& x, int k, double z) const {
 ToolContact System::contact_at(const StepData& step, const Vector3d& x, int k, int i, double z) const {
   if (step.contact_shear.empty()) return contact_at(x, k, z);
   ToolContact contact;
-  contact.surface = distance(scene_.tools[k].shape, x - Vector3d(0, 0, z));
+  contact.surface = distance(scene_.tools[k], x - Vector3d(0, 0, z));
   contact.normal = normal_contact(scene_.fabric->compaction, step.contact_shear[i], contact.surface.distance,
                                   0.5 * scene_.fabric->thickness);
   return contact;
@@ -112,7 +119,7 @@ ToolContact System::tool_contact(const StepData& step, const VectorXd& x, int k,
 }
 
 Vector3d System::relative_velocity(const StepData& step, const VectorXd& x, int k, int i) const {
-  const double tool_motion = tool_position(step, x, k) - step.start->tool_z[k];
+  const double tool_motion = tool_position(step, x, k) - tool_position(*step.start, k);
   return (at_point(points_[i], x) - at_point(points_[i], step.start->x) - Vector3d(0, 0, tool_motion)) /
          step.dt;
 }
@@ -217,7 +224,7 @@ PotentialTerms System::potential(const StepData& step, const Position& at) const
   for (int k = 0; k < tools; ++k) {
     e.compaction += ordered_sum(
         contacts(), [&](int i) { return contact_area(step, i) * at.contacts[k][i].normal.energy; });
-    if (body_[k] >= 0) e.loads += scene_.tools[k].force * x[body_[k]];
+    if (body_[k] >= 0) e.loads += drive_at(scene_.tools[k], x[body_[k]]).energy;
   }
   for (std::size_t k = 0; k < scene_.load.size(); ++k)
     e.loads -= scene_.load[k] * x[static_cast<Eigen::Index>(k)];
@@ -299,7 +306,7 @@ VectorXd System::full_gradient(const StepData& step, const Position& at) const {
           g.segment<3>(3 * points_[i].node[a]) += points_[i].weight[a] * force[i];
     }
     if (body_[k] >= 0) {
-      g[body_[k]] += scene_.tools[k].force;
+      g[body_[k]] += drive_at(scene_.tools[k], x[body_[k]]).force;
       for (const Vector3d& f : force) g[body_[k]] -= f.z();
     }
   }

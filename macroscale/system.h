@@ -103,8 +103,13 @@ class System {
   /// Largest diagonal entry of the last assembled matrix [N/m].
   double largest_diagonal() const;
 
-  /// Position of tool k at the end of the step: its own unknown if it is loaded.
+  /// Position of tool k along z at the end of the step: its own unknown if it is loaded, that besides its
+  /// drive's if it is sprung.
   double tool_position(const StepData& step, const Eigen::VectorXd& x, int k) const;
+  /// The same of a state.
+  double tool_position(const State& state, int k) const;
+  /// The unknown of tool k, or -1.
+  int unknown_of(int k) const { return body_[k]; }
   /// Nodes or Gauss points: what touches and rubs.
   const std::vector<ContactPoint>& contact_points() const { return points_; }
   int contacts() const { return static_cast<int>(points_.size()); }
@@ -140,7 +145,7 @@ class System {
   void add_corners(const StepData& step, const Position& at, Filter filter);
   void add_contact(const StepData& step, const Position& at, Filter filter);
   void add_contact_in_cells(const StepData& step, const Position& at, Filter filter);
-  void close_body_row(const StepData& step, int k, int body);
+  void close_body_row(const StepData& step, const Position& at, int k, int body);
   Eigen::Vector3d contact_force(const StepData& step, const Position& at, int k, int i) const;
   Eigen::Matrix3d contact_stiffness(const StepData& step, const Position& at, int k, int i,
                                     Filter filter) const;

@@ -7,6 +7,7 @@
 #include <tbb/parallel_for.h>
 
 #include "macroscale/system.h"
+#include "macroscale/tool_drive.h"
 
 namespace heddle::macroscale {
 
@@ -197,7 +198,7 @@ void System::add_contact(const StepData& step, const Position& at, Filter filter
       if (loaded)
         for (int c = 0; c < 3; ++c) (*row)[3 * i + c] = -stiffness(2, c);
     });
-    if (loaded) close_body_row(step, k, body++);
+    if (loaded) close_body_row(step, at, k, body++);
   }
 }
 
@@ -226,13 +227,14 @@ void System::add_contact_in_cells(const StepData& step, const Position& at, Filt
           }
         }
       });
-    if (loaded) close_body_row(step, k, body++);
+    if (loaded) close_body_row(step, at, k, body++);
   }
 }
 
-// A loaded tool feels what all its contacts feel along z, and its own mass.
-void System::close_body_row(const StepData& step, int k, int body) {
-  double diagonal = scene_.tools[k].mass / (step.dt * step.dt);
+// A loaded tool feels what all its contacts feel along z, its own mass and its spring.
+void System::close_body_row(const StepData& step, const Position& at, int k, int body) {
+  const Tool& tool = scene_.tools[k];
+  double diagonal = tool.mass / (step.dt * step.dt) + drive_at(tool, at.x[body_[k]]).stiffness;
   for (int i = 0; i < scene_.blank.nodes(); ++i) diagonal -= body_row_[body][3 * i + 2];
   body_diagonal_[body] = diagonal;
 }

@@ -43,12 +43,20 @@ double lift_to_touch(const TriangleMesh& mesh, Role role) {
   return from_above(role) ? -z.low : -z.high;
 }
 
+// Of a tool's axis from that of the press.
+Vector3d offset_of(const StampingSpec& spec, Role role) {
+  if (role != Role::punch) return Vector3d::Zero();
+  const auto& offset = spec.process.press.punch_offset;
+  return {offset[0], offset[1], 0.0};
+}
+
 Shape shape_of_numbers(const StampingSpec& spec, Role role) {
   switch (role) {
     case Role::punch:
-      return HemisphereShape{Vector3d::Zero(), spec.punch.radius};
+      return HemisphereShape{offset_of(spec, role), spec.punch.radius};
     case Role::die:
-      return RingShape{0.0, spec.die.opening_radius, spec.die.fillet, true};
+      return RingShape{0.0, spec.die.opening_radius, spec.die.fillet, true,
+                       spec.die.bottom == DieBottom::bowl ? spec.die.depth : 0.0};
     case Role::binder:
       return RingShape{0.0, spec.binder.inner_radius, spec.binder.edge_fillet, false};
   }
@@ -65,7 +73,9 @@ std::string key_of(Role role) {
 Shape touching(const StampingSpec& spec, Role role) {
   const auto& file = file_of(spec, role);
   if (!file) return shape_of_numbers(spec, role);
-  return BandShape{file->loaded->band, Vector3d(0.0, 0.0, lift_to_touch(file->loaded->tool.mesh, role))};
+  const Vector3d offset = offset_of(spec, role);
+  return BandShape{file->loaded->band,
+                   Vector3d(offset.x(), offset.y(), lift_to_touch(file->loaded->tool.mesh, role))};
 }
 
 // Empty for a tool of numbers.
@@ -93,13 +103,14 @@ Nearest nearer(const Nearest& a, const Nearest& b) {
 // A tool at its place before the stroke.
 struct Placed {
   const TriangleMesh* mesh;
-  double lift;  ///< of the mesh's origin [m]
+  Vector3d lift;  ///< of the mesh's origin [m]
   Shape shape;
 };
 
 Placed placed(const StampingSpec& spec, Role role, double base) {
   const TriangleMesh* mesh = mesh_of(spec, role);
-  return {mesh, base + (mesh ? lift_to_touch(*mesh, role) : 0.0), raised(touching(spec, role), base)};
+  const double lift = base + (mesh ? lift_to_touch(*mesh, role) : 0.0);
+  return {mesh, offset_of(spec, role) + Vector3d(0.0, 0.0, lift), raised(touching(spec, role), base)};
 }
 
 // Where the vertices of one tool come nearest to another while the punch goes down. `sign` is -1 where the
@@ -115,7 +126,7 @@ Nearest nearest_on_stroke(const Placed& of_vertices, const Placed& other, double
         [&](const tbb::blocked_range<std::size_t>& range, Nearest found) {
           for (std::size_t i = range.begin(); i != range.end(); ++i) {
             const auto& v = vertices[i];
-            const Vector3d x(v[0], v[1], v[2] + of_vertices.lift + sign * travel);
+            const Vector3d x = Vector3d(v[0], v[1], v[2] + sign * travel) + of_vertices.lift;
             const double d = clearance(other.shape, x);
             if (d < found.distance) found = {d, travel, x};
           }
@@ -179,8 +190,9 @@ Box reach_of_fabric(const StampingSpec& spec, Role role, const TriangleMesh& mes
     const auto [low, high] =
         std::minmax_element(outline.outer.begin(), outline.outer.end(),
                             [c](const Point2& a, const Point2& b) { return a[c] < b[c]; });
-    reach.low[c] = (*low)[c] - margin;
-    reach.high[c] = (*high)[c] + margin;
+    const double aside = std::abs(offset_of(spec, role)[static_cast<Eigen::Index>(c)]);
+    reach.low[c] = (*low)[c] - margin - aside;
+    reach.high[c] = (*high)[c] + margin + aside;
   }
   // The binder stays on the blank, the die below it; the punch is down by the stroke at its end.
   if (role == Role::die)
@@ -209,6 +221,7 @@ Shape raised(Shape shape, double z) {
     void operator()(CylinderShape& s) const { s.centre.z() += z; }
     void operator()(HemisphereShape& s) const { s.apex.z() += z; }
     void operator()(RingShape& s) const { s.level += z; }
+    void operator()(SectorShape& s) const { s.level += z; }
     void operator()(CurvedPlateShape& s) const { s.level += z; }
     void operator()(BandShape& s) const { s.offset.z() += z; }
   };

@@ -1,7 +1,9 @@
 #include "macroscale/tools.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <numbers>
 
 #include "macroscale/tool_band.h"
 
@@ -53,7 +55,14 @@ Distance evaluate_up(const RingShape& ring, const Vector3d& x) {
   const auto hoop = [&](double normal_r) -> Matrix3d {
     return (normal_r / std::max(r, 1e-12)) * around * around.transpose();
   };
-  if (x.z() <= centre_z) return {ring.opening_radius - r, -outward, hoop(-1.0)};
+  if (x.z() <= centre_z) {
+    const Vector3d from_bowl(x.x(), x.y(), x.z() - (ring.level - ring.bowl_depth + ring.opening_radius));
+    if (ring.bowl_depth > 0.0 && from_bowl.z() < 0.0) {
+      const Distance inside = round(from_bowl, ring.opening_radius, Vector3d::Zero());
+      return {-inside.distance, -inside.normal, -inside.curvature};
+    }
+    return {ring.opening_radius - r, -outward, hoop(-1.0)};
+  }
   const double dr = r - centre_r, dz = x.z() - centre_z;
   const double rho = std::max(std::hypot(dr, dz), 1e-12);
   const Vector3d n = (dr / rho) * outward + Vector3d(0, 0, dz / rho);
@@ -71,6 +80,42 @@ Distance evaluate(const RingShape& ring, const Vector3d& x) {
   const Vector3d flip(1.0, 1.0, -1.0);
   d.curvature = flip.asDiagonal() * d.curvature * flip.asDiagonal();
   return d;
+}
+
+// How far a point lies outside the part of the sector's plan that is a fillet away from its edges: q = |p|
+// with one component an edge, each growing along a level unit vector; exact where the edges meet square.
+Distance evaluate(const SectorShape& sector, const Vector3d& x) {
+  struct Edge {
+    double outside;      ///< of the inner plan, not below 0 [m]
+    Vector3d direction;  ///< in which it grows
+  };
+  const double f = sector.fillet, r = std::max(std::hypot(x.x(), x.y()), 1e-12);
+  const Vector3d outward = r > 1e-12 ? Vector3d(x.x() / r, x.y() / r, 0.0) : Vector3d::UnitX();
+  const Vector3d past_from(std::sin(sector.from), -std::cos(sector.from), 0.0),
+      past_to(-std::sin(sector.to), std::cos(sector.to), 0.0);
+  const bool half_turn = sector.to - sector.from > std::numbers::pi - 1e-9;  // both its edges are one line
+  const std::array<Edge, 3> edges = {{{std::max(sector.opening_radius + f - r, 0.0), -outward},
+                                      {std::max(past_from.dot(x) + f, 0.0), past_from},
+                                      {half_turn ? 0.0 : std::max(past_to.dot(x) + f, 0.0), past_to}}};
+  double squared = 0.0;
+  for (const Edge& edge : edges) squared += edge.outside * edge.outside;
+  const double below = sector.level - x.z();
+  if (squared == 0.0) return flat(below, -Vector3d::UnitZ());
+  const double height = below + f;  // from the centres of the roundings
+  const double rise = std::max(height, 0.0);
+  const double rho = std::max(std::sqrt(squared + rise * rise), 1e-12);
+  Vector3d n = -rise / rho * Vector3d::UnitZ();
+  Matrix3d curvature = Matrix3d::Zero();
+  if (rise > 0.0) curvature += Vector3d::UnitZ() * Vector3d::UnitZ().transpose() / rho;
+  for (const Edge& edge : edges) {
+    if (edge.outside == 0.0) continue;
+    n += edge.outside / rho * edge.direction;
+    curvature += edge.direction * edge.direction.transpose() / rho;
+  }
+  curvature -= n * n.transpose() / rho;
+  const Vector3d around(-outward.y(), outward.x(), 0.0);
+  curvature -= edges[0].outside / (rho * r) * around * around.transpose();
+  return {rho - f, n, curvature};
 }
 
 // Distance to the middle of the path, positive above it.
@@ -106,6 +151,10 @@ std::string name_of(Role role) {
   return role == Role::punch ? "punch" : role == Role::die ? "die" : "binder";
 }
 
+bool has_unknown(const Tool& tool) {
+  return tool.motion == Motion::loaded || tool.motion == Motion::sprung;
+}
+
 Vector3d place_on(const CurvedPlateShape& plate, double s) {
   const double level = plate.level;
   const double radius = plate.path.radius, angle = plate.path.angle, half = radius * angle;
@@ -123,6 +172,13 @@ Vector3d place_on(const CurvedPlateShape& plate, double s) {
 
 Distance distance(const Shape& shape, const Vector3d& x) {
   return std::visit([&](const auto& s) { return evaluate(s, x); }, shape);
+}
+
+Distance distance(const Tool& tool, const Vector3d& x) {
+  if (!tool.turn) return distance(tool.shape, x);
+  const auto& [rotation, pivot] = *tool.turn;
+  const Distance d = distance(tool.shape, Vector3d(pivot + rotation.transpose() * (x - pivot)));
+  return {d.distance, rotation * d.normal, rotation * d.curvature * rotation.transpose()};
 }
 
 }  // namespace heddle::macroscale

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <memory>
+#include <optional>
 #include <string>
 #include <variant>
 
@@ -43,6 +44,19 @@ struct RingShape {
   double opening_radius = 1.0;  ///< [m]
   double fillet = 0.1;          ///< [m]
   bool up = true;
+  /// Lowest point of a bowl of the opening's radius that closes it below, from the face [m]; 0 = open. Only
+  /// where `up`, and at least radius + fillet.
+  double bowl_depth = 0.0;
+};
+
+/// One of several equal sectors of a plate with a round opening, solid above z = level: those of polar angle
+/// `from` to `to` (counter-clockwise, at most half a turn apart), beyond the opening. All edges are rounded
+/// alike: d is exact where they meet square (C1 everywhere).
+struct SectorShape {
+  double level = 0.0;           ///< z of the flat face [m]
+  double opening_radius = 1.0;  ///< [m]
+  double fillet = 0.1;          ///< [m]
+  double from = 0.0, to = 1.0;  ///< [rad]
 };
 
 /// One of two matched plates along y, bent as `path` from x = start on; the middle between them lies at z =
@@ -69,24 +83,40 @@ struct BandShape {
   Eigen::Vector3d offset = Eigen::Vector3d::Zero();  ///< where the file's origin stands [m]
 };
 
-using Shape =
-    std::variant<PlaneShape, CylinderShape, HemisphereShape, RingShape, CurvedPlateShape, BandShape>;
+using Shape = std::variant<PlaneShape, CylinderShape, HemisphereShape, RingShape, SectorShape,
+                           CurvedPlateShape, BandShape>;
 
 Distance distance(const Shape& shape, const Eigen::Vector3d& x);
 
 /// How a tool moves: along z only. `driven` follows a prescribed position, `loaded` is a rigid body pressed
-/// down by a constant force.
-enum class Motion { fixed, driven, loaded };
+/// down by a force (and a spring), `sprung` hangs on a spring whose other end follows a prescribed position.
+enum class Motion { fixed, driven, loaded, sprung };
 
 enum class Role { punch, die, binder };
 std::string name_of(Role role);  ///< as in the configuration
+
+/// A shape turned about a point that moves with the tool.
+struct Turn {
+  Eigen::Matrix3d rotation =
+      Eigen::Matrix3d::Identity();                  ///< from the shape as drawn to the tool as it stands
+  Eigen::Vector3d pivot = Eigen::Vector3d::Zero();  ///< [m]
+};
 
 struct Tool {
   Role role = Role::die;
   Shape shape;
   Motion motion = Motion::fixed;
-  double force = 0.0;  ///< downwards, for Motion::loaded [N]
-  double mass = 0.0;   ///< for Motion::loaded [kg]
+  double force = 0.0;      ///< downwards, for Motion::loaded [N]
+  double mass = 0.0;       ///< for Motion::loaded [kg]
+  double weight = 0.0;     ///< downwards besides, of gravity, for Motion::loaded [N]
+  double stiffness = 0.0;  ///< of its spring; 0 = none (loaded) [N/m]
+  double yield = 0.0;      ///< force at which the spring of a sprung tool yields to a push; 0 = never [N]
+  std::optional<Turn> turn = {};
 };
+
+bool has_unknown(const Tool& tool);  ///< loaded and sprung tools have one of their own
+
+/// Distance to the tool where it stands before it moves.
+Distance distance(const Tool& tool, const Eigen::Vector3d& x);
 
 }  // namespace heddle::macroscale

@@ -1,6 +1,7 @@
 #include "pipeline/case_settings.h"
 
 #include <array>
+#include <cmath>
 
 #include "core/units.h"
 #include "macroscale/outline_file.h"
@@ -246,6 +247,37 @@ FrictionTestSpec friction_test_of(const Settings& settings, const std::filesyste
   return test;
 }
 
+macroscale::PressSpec press_of(const Settings& settings) {
+  macroscale::PressSpec press;
+  press.gravity = settings.is("process.gravity", "on");
+  take(settings, "process.bottoming_force", press.force_limit);
+  take(settings, "process.dwell", press.dwell);
+  press.release = settings.is("process.release", "on");
+  take(settings, "effects.press_compliance.compliance", press.compliance);
+  const std::string misaligned = "effects.punch_misalignment";
+  double offset = 0.0, direction = 0.0;
+  take(settings, misaligned + ".offset", offset);
+  take(settings, misaligned + ".direction", direction);
+  press.punch_offset = {offset * std::cos(direction), offset * std::sin(direction)};
+  take(settings, "effects.binder_tilt.angle", press.binder_tilt);
+  take(settings, "effects.binder_tilt.axis", press.binder_tilt_axis);
+  return press;
+}
+
+void take_bottom(const Settings& settings, macroscale::DieSpec& die) {
+  using macroscale::DieBottom;
+  if (settings.is("tools.die.bottom", "flat")) die.bottom = DieBottom::flat;
+  if (settings.is("tools.die.bottom", "bowl")) die.bottom = DieBottom::bowl;
+  take(settings, "tools.die.depth", die.depth);
+}
+
+void take_control(const Settings& settings, macroscale::BinderSpec& binder) {
+  if (settings.is("tools.binder.control", "gap")) binder.control = macroscale::BinderControl::gap;
+  take(settings, "tools.binder.gap", binder.gap);
+  take(settings, "tools.binder.stiffness", binder.stiffness);
+  take(settings, "tools.binder.sectors", binder.sectors);
+}
+
 macroscale::ProcessSpec process_of(const Settings& settings) {
   macroscale::ProcessSpec process;
   take(settings, "process.punch.stroke", process.stroke);
@@ -255,6 +287,7 @@ macroscale::ProcessSpec process_of(const Settings& settings) {
   take(settings, "process.steps", process.steps);
   take(settings, "process.binder_force", process.binder_force);
   take(settings, "process.hold", process.hold);
+  process.press = press_of(settings);
   take(settings, "process.tool_temperature", process.tool_temperature);
   take(settings, "process.blank_temperature", process.blank_temperature);
   return process;
@@ -303,6 +336,8 @@ macroscale::StampingSpec stamping_of(const Settings& settings, const std::filesy
   take(settings, "tools.binder.inner_radius", stamping.binder.inner_radius);
   take(settings, "tools.binder.edge_fillet", stamping.binder.edge_fillet);
   take(settings, "tools.binder.mass", stamping.binder.mass);
+  take_bottom(settings, stamping.die);
+  take_control(settings, stamping.binder);
   stamping.punch.file = tool_file_of(settings, "punch", folder);
   stamping.die.file = tool_file_of(settings, "die", folder);
   stamping.binder.file = tool_file_of(settings, "binder", folder);

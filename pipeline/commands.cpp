@@ -7,6 +7,7 @@
 #include <fmt/format.h>
 
 #include "macroscale/advice.h"
+#include "macroscale/punch_profile.h"
 #include "pipeline/cache.h"
 #include "pipeline/case.h"
 #include "pipeline/coupon_report.h"
@@ -190,7 +191,7 @@ RunEnding run_part(const RunOptions& options, Part part) {
   const InterruptGuard guard;
   Findings findings;
   for (const std::string& note : a_case.notes) folder.log("note: " + note);
-  const int steps = a_case.stamping ? a_case.stamping->process.steps : 0;
+  const int steps = a_case.stamping ? macroscale::all_steps(a_case.stamping->process) : 0;
   const auto interrupted_before_stamping = [&] { return a_case.stamping && InterruptGuard::interrupted(); };
   run_cell(a_case, folder, cache, findings);
   run_solid(a_case, folder, cache, findings);

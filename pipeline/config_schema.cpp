@@ -331,10 +331,10 @@ std::vector<Key> effect_keys() {
   const std::vector<std::string> to_come{
       "shear_locking",
       "tension_shear_coupling", "bending", "tow_rate_stiffening", "inter_tow_slip", "crimp_straightening",
-      "shear_thermal_softening", "binder_tilt", "punch_misalignment", "blank_cooling", "press_compliance",
-      "inertia", "binder_force_level", "initial_orientation", "normal_force_relaxation", "load_cell_offset",
+      "shear_thermal_softening", "blank_cooling", "inertia", "binder_force_level", "initial_orientation", "normal_force_relaxation", "load_cell_offset",
       "gain_drift", "drive_backlash", "nonuniform_pressure", "mislabelled_condition", "discretisation"};
   append(keys, friction_effect_keys());
+  append(keys, press_effect_keys());
   for (const std::string& id : to_come) keys.push_back(later("effects." + id, "Effect of a later version."));
   return keys;
 }

@@ -10,6 +10,7 @@
 #include "core/units.h"
 #include "friction/calibration/model_numbers.h"
 #include "friction/parameters.h"
+#include "macroscale/punch_profile.h"
 #include "mesoscale/cell.h"
 #include "pipeline/discover/coupon_forward.h"
 #include "pipeline/discover/discovery.h"
@@ -103,14 +104,21 @@ std::string refusal_of(const EffectFile& effect, const Case& a_case) {
   if (effect.id == "inertia")
     return a_case.stamping->artefact.mass_scaling != 1.0 ? "is in the case already (artefact.mass_scaling)"
                                                          : "";
+  const macroscale::PressSpec& press = a_case.stamping->process.press;
+  if (effect.id == "press_compliance")
+    return press.compliance > 0.0 ? "is in the case already (effects.press_compliance)" : "";
+  if (effect.id == "punch_misalignment" || effect.id == "binder_tilt")
+    return "moves the punch force in second order alone: its sign is told by the draw-in of opposite sides";
   if (effect.id == discretisation) return "";
   if (effect.stage == "rig") return "is a fault of the friction rig, which no press has";
   return "has no term in the stamping";
 }
 
+/// Of the stroke: rows of a dwell stand at its end and would be taken for one more place.
 ForceCurve curve_of(const std::vector<macroscale::HistoryRow>& history, bool completed) {
   ForceCurve curve;
   for (const macroscale::HistoryRow& row : history) {
+    if (!curve.stroke.empty() && row.punch_displacement <= curve.stroke.back()) break;
     curve.stroke.push_back(row.punch_displacement);
     curve.force.push_back(row.punch_force);
   }
@@ -178,7 +186,7 @@ ForceCurve StampingRuns::stamp(const std::vector<std::string>& keys) {
   inputs.inputs.push_back({"discover.stamping", "force"});
   record.key = inputs.key();
   record.inputs = inputs.text();
-  record.steps = a_case.stamping->process.steps;
+  record.steps = macroscale::all_steps(a_case.stamping->process);
   if (const auto found = cache_.find(record.key, read_stamping_record); found && found->complete())
     return curve_of(found->at.history, true);
   load_tools(a_case);

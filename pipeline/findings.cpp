@@ -34,7 +34,9 @@ std::vector<Condition> conditions_of(const Case& a_case) {
   if (!a_case.stamping) return {};
   const auto& s = *a_case.stamping;
   return {
-      {"Binder force", fmt::format("{:g} N", s.process.binder_force)},
+      s.binder.control == macroscale::BinderControl::gap
+          ? Condition{"Binder", fmt::format("held at a gap of {:g} mm", 1e3 * s.binder.gap)}
+          : Condition{"Binder force", fmt::format("{:g} N", s.process.binder_force)},
       {"Tool temperature", fmt::format("{:g} degC", s.process.tool_temperature - 273.15)},
       {"Blank temperature", fmt::format("{:g} degC", s.process.blank_temperature - 273.15)},
       {"Stroke",

@@ -7,6 +7,7 @@
 #include <fmt/format.h>
 
 #include "core/progress.h"
+#include "macroscale/punch_profile.h"
 
 namespace heddle::pipeline {
 
@@ -72,7 +73,8 @@ macroscale::GridError run_grid_error_stage(const macroscale::StampingSpec& spec,
       reused = true;
       return std::move(*found);
     }
-    Progress progress("grid error", spec.process.steps, progress_style_of_standard_error(quiet), std::cerr);
+    Progress progress("grid error", macroscale::all_steps(spec.process),
+                      progress_style_of_standard_error(quiet), std::cerr);
     macroscale::StampingControl control;
     control.observe = [&](int step, int, const macroscale::HistoryRow& row, const macroscale::BlankState&) {
       progress.update(step, fmt::format("punch {:.1f} mm", 1e3 * row.punch_displacement));

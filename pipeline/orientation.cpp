@@ -9,6 +9,7 @@
 #include <fmt/format.h>
 
 #include "core/progress.h"
+#include "macroscale/punch_profile.h"
 #include "pipeline/cache.h"
 #include "pipeline/chart.h"
 #include "pipeline/export_vtu.h"
@@ -190,8 +191,8 @@ macroscale::StampingResult stamp_or_find(const macroscale::StampingSpec& spec,
   control.observe = observe;
   control.stop = InterruptGuard::interrupted;
   control.keep = [&](const macroscale::StampingCheckpoint& checkpoint, bool last) {
-    if (reused || !last || checkpoint.step != spec.process.steps) return;
-    StampingRecord record{key, "orientation study", spec.process.steps, checkpoint, {}};
+    if (reused || !last || checkpoint.step != macroscale::all_steps(spec.process)) return;
+    StampingRecord record{key, "orientation study", macroscale::all_steps(spec.process), checkpoint, {}};
     cache.store(key, bytes_of(record));
   };
   return macroscale::run_stamping(spec, fabric, model, control);
@@ -204,7 +205,7 @@ OrientedBlank stamp(const Case& a_case, double angle, const mesoscale::FabricPro
   blank.angle = angle;
   macroscale::StampingSpec spec = *a_case.stamping;
   spec.blank.orientation = angle;
-  Progress progress("blank at " + angle_text(angle) + " deg", spec.process.steps,
+  Progress progress("blank at " + angle_text(angle) + " deg", macroscale::all_steps(spec.process),
                     progress_style_of_standard_error(quiet), std::cerr);
   const auto observe = [&](int step, int, const macroscale::HistoryRow& row, const macroscale::BlankState&) {
     progress.update(step,

@@ -74,12 +74,14 @@ constexpr Column<History> history_columns[] = {
     {"lag_iterations", [](const History& r) { return static_cast<double>(r.lag_iterations); }},
     {"work_punch_J", [](const History& r) { return r.work_punch; }},
     {"work_binder_J", [](const History& r) { return r.work_binder; }},
+    {"work_gravity_J", [](const History& r) { return r.work_gravity; }},
     {"energy_tow_J", [](const History& r) { return r.energy_tow; }},
     {"energy_shear_J", [](const History& r) { return r.energy_shear; }},
     {"energy_bending_J", [](const History& r) { return r.energy_bending; }},
     {"energy_twist_J", [](const History& r) { return r.energy_twist; }},
     {"energy_compaction_J", [](const History& r) { return r.energy_compaction; }},
     {"energy_kinetic_J", [](const History& r) { return r.energy_kinetic; }},
+    {"energy_press_J", [](const History& r) { return r.energy_press; }},
     {"friction_punch_J", [](const History& r) { return r.friction_punch; }},
     {"friction_die_J", [](const History& r) { return r.friction_die; }},
     {"friction_binder_J", [](const History& r) { return r.friction_binder; }},
@@ -94,6 +96,7 @@ constexpr Column<History> history_columns[] = {
     {"self_crossings", [](const History& r) { return static_cast<double>(r.self_crossings); }},
     // A share of the friction columns, not a column of the ledger: it stands behind them and is not summed.
     {"friction_work_outside_calibration_J", [](const History& r) { return r.friction_work_outside; }},
+    {"punch_deflection_mm", [](const History& r) { return 1e3 * r.punch_deflection; }},
 };
 
 // Of a run with temperatures; behind all others.

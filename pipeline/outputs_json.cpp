@@ -67,6 +67,13 @@ Json heat_json(const macroscale::HeatSummary& heat) {
   return out;
 }
 
+Json release_json(const macroscale::Release& release) {
+  return {{"draw_in_max_mm", 1e3 * release.row.draw_in_max},
+          {"shear_angle_max_deg", degrees * release.row.shear_angle_max},
+          {"moved_max_mm", 1e3 * release.moved},
+          {"ledger_residual_J", release.row.ledger_residual}};
+}
+
 Json stamping_json(const macroscale::StampingSummary& summary) {
   Json rays = Json::array();
   for (const double draw_in : summary.draw_in_rays) rays.push_back(1e3 * draw_in);
@@ -94,6 +101,7 @@ Json stamping_json(const macroscale::StampingSummary& summary) {
   out["newton_iterations"] = summary.newton_iterations;
   out["factorisations"] = summary.factorisations;
   if (summary.heat) out["heat"] = heat_json(*summary.heat);
+  if (summary.release) out["release"] = release_json(*summary.release);
   if (!summary.failure.empty()) out["failure"] = summary.failure;
   return out;
 }

@@ -129,8 +129,14 @@ Canvas ledger_chart(const Rows& history) {
     chart.bands.push_back({entry.name, {}, column(history, 1.0, entry.value)});
     chart.band_style.push_back(entry.style);
   }
+  const auto in_press = [](const HistoryRow& row) { return row.energy_press != 0.0; };
+  if (std::any_of(history.begin(), history.end(), in_press)) {
+    chart.bands.push_back({"Press and springs", {}, column(history, 1.0, &HistoryRow::energy_press)});
+    chart.band_style.push_back(4);  // of the kinetic energy, which is not to be seen beside it
+  }
   Series work{"Work of the tools", {}, column(history, 1.0, &HistoryRow::work_punch)};
-  for (std::size_t i = 0; i < history.size(); ++i) work.y[i] += history[i].work_binder;
+  for (std::size_t i = 0; i < history.size(); ++i)
+    work.y[i] += history[i].work_binder + history[i].work_gravity;
   chart.lines = {std::move(work)};
   chart.width = full_width;
   chart.height = 400.0;

@@ -115,6 +115,14 @@ void shear_and_draw_in(Verdicts& out, const ReportInput& input) {
   out.add(tone, fmt::format("Largest shear angle: {:.1f}°{}.", angle, beside));
   out.add(Tone::note, fmt::format("Draw-in: the outline moved in by up to {} mm.",
                                   significant(1e3 * input.stamping->draw_in_max, 3)));
+  if (!input.stamping->release) return;
+  const macroscale::HistoryRow& released = input.stamping->release->row;
+  out.add(Tone::note,
+          fmt::format(
+              "Released, the blank springs back by up to {} mm: its largest shear angle is then {:.1f}°, its "
+              "largest draw-in {} mm. Pictures show it released.",
+              significant(1e3 * input.stamping->release->moved, 3), degrees * released.shear_angle_max,
+              significant(1e3 * released.draw_in_max, 3)));
 }
 
 void balances(Verdicts& out, const macroscale::StampingSummary& summary) {
@@ -133,7 +141,8 @@ void balances(Verdicts& out, const macroscale::StampingSummary& summary) {
 void symmetry(Verdicts& out, const macroscale::StampingSummary& summary) {
   if (summary.symmetry_gap_shear < 0.0 || summary.symmetry_gap_draw_in < 0.0) {
     out.add(Tone::note,
-            "The blank and its grid have not got the eight symmetries of the square about the tows, so there "
+            "The blank, its grid or the press have not got the eight symmetries of the square about the "
+            "tows, so there "
             "is nothing to check by symmetry.");
     return;
   }

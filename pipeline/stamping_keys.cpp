@@ -31,14 +31,49 @@ std::vector<Key> process_keys() {
       {.path = "process.steps", .type = KeyType::integer, .presence = defaulted, .default_text = "100",
        .range = "[1, 1000000]", .stage = stamping, .help = "Equal in stroke; one that fails is halved."},
       {.path = "process.binder_force", .type = KeyType::quantity, .unit = "N", .presence = required,
-       .range = "(0 N, )", .stage = stamping, .help = "Total force on the binder (paper: 650 to 3000 N)."},
+       .range = "(0 N, )", .stage = stamping, .used_when = "tools.binder.control=force",
+       .help = "Total force of the press on the binder (paper: 650 to 3000 N)."},
+      {.path = "process.bottoming_force", .type = KeyType::quantity, .unit = "N", .presence = optional,
+       .range = "(0 N, )", .stage = stamping,
+       .help = "The punch yields where it would have to push harder than this, and goes on when it can."},
       {.path = "process.tool_temperature", .type = KeyType::quantity, .unit = "degC", .presence = required,
        .range = "[-100 degC, 500 degC]", .stage = stamping, .help = "Of punch, die and binder."},
       {.path = "process.blank_temperature", .type = KeyType::quantity, .unit = "degC", .presence = required,
        .range = "[-100 degC, 500 degC]", .stage = stamping, .help = "Of the fabric."},
+      {.path = "process.gravity", .type = KeyType::choice, .presence = defaulted, .default_text = "off",
+       .choices = {"on", "off"}, .stage = stamping,
+       .help = "on: the fabric weighs what it is (the true mass) and sags before the punch moves; the binder's weight comes on top of binder_force."},
+      {.path = "process.dwell", .type = KeyType::quantity, .unit = "s", .presence = defaulted, .default_text = "0 s",
+       .range = "[0 s, 36000 s]", .stage = stamping,
+       .help = "Time that the tools stand still after the stroke while fabric, resin and friction go on: 20 more rows of history.csv."},
       {.path = "process.hold", .type = KeyType::quantity, .unit = "s", .presence = defaulted, .default_text = "0 s",
        .range = "[0 s, 36000 s]", .stage = stamping, .used_when = "thermal",
-       .help = "Longest time that the tools stay closed and still after the stroke; it ends when no melt is left."},
+       .help = "Longest time that the tools stay closed and still after the stroke (and after process.dwell); the fabric no longer moves, and it ends when no melt is left."},
+      {.path = "process.release", .type = KeyType::choice, .presence = defaulted, .default_text = "off",
+       .choices = {"on", "off"}, .stage = stamping,
+       .help = "on: after all, punch and binder go up and the blank comes to rest on the die as its laws let it; the last frame is then the released blank."},
+  };
+}
+
+std::vector<Key> press_effect_keys() {
+  const auto stamping = Stage::stamping;
+  const std::string offset = "effects.punch_misalignment", tilt = "effects.binder_tilt";
+  return {
+      {.path = "effects.press_compliance.compliance", .type = KeyType::quantity, .unit = "mm/kN", .presence = required,
+       .range = "[0 mm/kN, 1000 mm/kN]", .stage = stamping, .used_when = "effects.press_compliance",
+       .help = "Of the press: the punch stays behind its drive by this times its force; 0 mm/kN is off."},
+      {.path = offset + ".offset", .type = KeyType::quantity, .unit = "mm", .presence = required,
+       .range = "[-100 mm, 100 mm]", .stage = stamping, .used_when = offset,
+       .help = "Of the punch's axis from that of die and binder; 0 mm is off."},
+      {.path = offset + ".direction", .type = KeyType::quantity, .unit = "deg", .presence = defaulted,
+       .default_text = "0 deg", .range = "[-360 deg, 360 deg]", .stage = stamping, .used_when = offset,
+       .help = "In which the punch stands off, against x."},
+      {.path = tilt + ".angle", .type = KeyType::quantity, .unit = "deg", .presence = required,
+       .range = "[-5 deg, 5 deg]", .stage = stamping, .used_when = tilt,
+       .help = "By which the binder is held out of level, about an axis through the punch's; 0 deg is off."},
+      {.path = tilt + ".axis", .type = KeyType::quantity, .unit = "deg", .presence = defaulted, .default_text = "0 deg",
+       .range = "[-360 deg, 360 deg]", .stage = stamping, .used_when = tilt,
+       .help = "Direction of that axis against x; the side to its left goes up."},
   };
 }
 
@@ -144,6 +179,12 @@ std::vector<Key> tool_keys() {
        .help = "Radius of the opening below the fillet."},
       {.path = "tools.die.fillet", .type = KeyType::quantity, .unit = "mm", .presence = required,
        .range = "(0 mm, 10000 mm)", .stage = stamping, .used_when = "!tools.die.file", .help = "Radius of the rounded edge."},
+      {.path = "tools.die.bottom", .type = KeyType::choice, .presence = defaulted, .default_text = "open",
+       .choices = {"open", "flat", "bowl"}, .stage = stamping, .used_when = "!tools.die.file",
+       .help = "What closes the opening below: nothing, a level floor, or a bowl of the opening's radius."},
+      {.path = "tools.die.depth", .type = KeyType::quantity, .unit = "mm", .presence = required,
+       .range = "(0 mm, 10000 mm)", .stage = stamping, .used_when = "!tools.die.file !tools.die.bottom=open",
+       .help = "Of that bottom's lowest point below the die's face."},
   });
   append(keys, tool_file_keys("die"));
   append(keys, {
@@ -157,6 +198,18 @@ std::vector<Key> tool_keys() {
        .help = "Rounding of the inner edge; keeps contact smooth where fabric leaves it."},
       {.path = "tools.binder.mass", .type = KeyType::quantity, .unit = "kg", .presence = required,
        .range = "(0 kg, )", .stage = stamping, .help = "Of the moving binder."},
+      {.path = "tools.binder.control", .type = KeyType::choice, .presence = defaulted, .default_text = "force",
+       .choices = {"force", "gap"}, .stage = stamping,
+       .help = "force: pressed by process.binder_force, free to move up and down; gap: held by stops at tools.binder.gap."},
+      {.path = "tools.binder.gap", .type = KeyType::quantity, .unit = "mm", .presence = required,
+       .range = "(0 mm, 1000 mm)", .stage = stamping, .used_when = "tools.binder.control=gap",
+       .help = "Between the faces of binder and die; less than the fabric's thickness presses it."},
+      {.path = "tools.binder.stiffness", .type = KeyType::quantity, .unit = "N/mm", .presence = defaulted,
+       .default_text = "0 N/mm", .range = "[0 N/mm, )", .stage = stamping, .used_when = "tools.binder.control=force",
+       .help = "Of springs behind the binder: its force is process.binder_force where it has closed on the flat blank and grows by this as it is lifted."},
+      {.path = "tools.binder.sectors", .type = KeyType::integer, .presence = defaulted, .default_text = "1",
+       .range = "[1, 64]", .stage = stamping, .used_when = "!tools.binder.file",
+       .help = "Equal sectors of the binder, the first about x, each with its share of force, springs and mass and free to move by itself."},
   });
   append(keys, tool_file_keys("binder"));
   return keys;

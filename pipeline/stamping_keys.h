@@ -8,6 +8,8 @@
 namespace heddle::pipeline {
 
 std::vector<Key> process_keys();
+/// Effects of the press: its frame, a punch off its axis, a binder out of level.
+std::vector<Key> press_effect_keys();
 std::vector<Key> blank_keys();
 std::vector<Key> contact_keys();
 std::vector<Key> tool_keys();  ///< punch, die and binder, by shape or from files

@@ -6,6 +6,7 @@
 #include <fmt/format.h>
 
 #include "core/progress.h"
+#include "macroscale/punch_profile.h"
 #include "pipeline/export_vtu.h"
 #include "pipeline/indicator_outputs.h"
 
@@ -106,7 +107,7 @@ macroscale::StampingResult run_stamping_stage(const macroscale::StampingSpec& sp
                                               const mesoscale::FabricProperties& fabric,
                                               const friction::Model& friction, RunFolder& folder,
                                               const Cache& cache, StampingStageOptions options) {
-  const int steps = spec.process.steps;
+  const int steps = macroscale::all_steps(spec.process);
   StampingFiles files(folder, cache, options, fabric, steps);
   std::optional<StampingRecord> from;
   const auto work = [&](bool& reused) {
@@ -144,7 +145,12 @@ macroscale::StampingResult run_stamping_stage(const macroscale::StampingSpec& sp
   folder.write("macroscale/history.csv", history_csv(result.history));
   if (!result.hold.empty()) {
     folder.write("macroscale/hold.csv", hold_csv(result.hold));
-    folder.write("macroscale/blank_held.vtu", vtu(mesh_with_indicators(result.final_state, fabric)));
+    if (!result.summary.release)
+      folder.write("macroscale/blank_held.vtu", vtu(mesh_with_indicators(result.final_state, fabric)));
+  }
+  if (result.summary.release) {
+    folder.write("macroscale/release.csv", history_csv(std::vector{result.summary.release->row}));
+    folder.write("macroscale/blank_released.vtu", vtu(mesh_with_indicators(result.final_state, fabric)));
   }
   if (!result.summary.completed && !result.summary.stopped) write_failure(result, fabric, folder);
   return result;

@@ -39,6 +39,9 @@ constexpr std::array library_order{"tool_temperature_film",
                                    "nonuniform_pressure",
                                    "mislabelled_condition",
                                    "shear_rate",
+                                   "binder_tilt",
+                                   "punch_misalignment",
+                                   "press_compliance",
                                    "inertia",
                                    "discretisation"};
 

@@ -1,12 +1,26 @@
-// Writes configs/tools/*.step from configs/tools/make_tools.geo: ninja make_tools && build/.../make_tools
+// Writes configs/tools/*.step from the scripts beside them: ninja make_tools && build/.../make_tools
 #include <filesystem>
 #include <string>
+#include <vector>
 
 #include "macroscale/cad.h"
 
+namespace {
+
+struct Script {
+  std::string name, prefix;
+  std::vector<std::string> tools;
+};
+
+}  // namespace
+
 int main() {
   const std::filesystem::path folder = std::filesystem::path(HEDDLE_SOURCE_DIR) / "configs/tools";
-  int tool = 0;
-  for (const char* name : {"punch", "die", "binder"})
-    heddle::macroscale::write_step(folder / "make_tools.geo", ++tool, folder / (std::string(name) + ".step"));
+  const std::vector<Script> scripts{{"make_tools.geo", "", {"punch", "die", "binder"}},
+                                    {"double_dome.geo", "double_dome_", {"punch", "die", "binder"}},
+                                    {"tetrahedron.geo", "tetrahedron_", {"punch", "die"}}};
+  for (const Script& script : scripts)
+    for (std::size_t k = 0; k < script.tools.size(); ++k)
+      heddle::macroscale::write_step(folder / script.name, static_cast<int>(k) + 1,
+                                     folder / (script.prefix + script.tools[k] + ".step"));
 }

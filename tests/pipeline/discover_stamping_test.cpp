@@ -372,13 +372,14 @@ TEST_CASE("the library of a stamping holds what its law admits and says what it 
   for (const Candidate& candidate : library.candidates)
     if (candidate.id == "stick_slip") weight += std::exp(candidate.log_weight);
   CHECK(weight == Approx(1.0));
-  for (const char* id : {"shear_rate", "inertia", "discretisation"})
+  for (const char* id : {"shear_rate", "press_compliance", "inertia", "discretisation"})
     CHECK(std::ranges::count(library.candidates, id, &Candidate::id) == 1);
   const auto refused = [&](const std::string& id) {
     return std::ranges::any_of(library.refused, [&](const auto& one) { return one.first == id; });
   };
   CHECK(refused("boundary_lubrication"));  // no Hersey number in a Coulomb law
   CHECK(refused("gain_drift"));
+  CHECK(refused("binder_tilt"));  // no force tells its sign
   // The keys of a trial read back to the numbers of the trial, bit for bit.
   const ForwardModel forward{.baseline = library.baseline, .candidates = library.candidates, .predict = {}};
   const auto at =

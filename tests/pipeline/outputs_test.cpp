@@ -92,42 +92,62 @@ TEST_CASE("the history table has the columns other programs rely on", "[outputs]
   const std::string csv = history_csv(sample::history(3));
   const std::vector<std::string> lines = split(csv, '\n');
   REQUIRE(lines.size() == 4);
-  CHECK(
-      lines[0] ==
-      "time_s,punch_displacement_mm,punch_force_N,die_force_N,binder_force_N,draw_in_max_mm,shear_angle_max_"
-      "deg,"
-      "tow_strain_max,newton_iterations,lag_iterations,work_punch_J,work_binder_J,energy_tow_J,energy_shear_"
-      "J,"
-      "energy_bending_J,energy_twist_J,energy_compaction_J,energy_kinetic_J,friction_punch_J,friction_die_J,"
-      "friction_binder_J,dissipation_shear_rate_J,dissipation_shear_hysteresis_J,dissipation_artefact_J,"
-      "dissipation_numerical_J,ledger_"
-      "residual_J,"
-      "force_balance_N,folded_nodes,near_nodes,self_crossings,friction_work_outside_calibration_J");
-  for (const std::string& line : lines) CHECK(split(line, ',').size() == 31);
+  const std::vector<std::string> names = {
+      "time_s", "punch_displacement_mm", "punch_force_N", "die_force_N", "binder_force_N", "draw_in_max_mm",
+      "shear_angle_max_deg", "tow_strain_max", "newton_iterations", "lag_iterations",
+      // The ledger.
+      "work_punch_J", "work_binder_J", "work_gravity_J", "energy_tow_J", "energy_shear_J", "energy_bending_J",
+      "energy_twist_J", "energy_compaction_J", "energy_kinetic_J", "energy_press_J", "friction_punch_J",
+      "friction_die_J", "friction_binder_J", "dissipation_shear_rate_J", "dissipation_shear_hysteresis_J",
+      "dissipation_artefact_J", "dissipation_numerical_J", "ledger_residual_J",
+      // Not of the ledger.
+      "force_balance_N", "folded_nodes", "near_nodes", "self_crossings",
+      "friction_work_outside_calibration_J", "punch_deflection_mm"};
+  CHECK(split(lines[0], ',') == names);
+  for (const std::string& line : lines) CHECK(split(line, ',').size() == names.size());
 }
 
 TEST_CASE("every history column holds its own quantity in its own unit", "[outputs]") {
-  macroscale::HistoryRow row;
-  row.time = 0.43, row.punch_displacement = 0.0625, row.punch_force = 3, row.die_force = 4,
-  row.binder_force = 5;
+  using Row = macroscale::HistoryRow;
+  constexpr double Row::*in_joule_and_newton[] = {&Row::work_punch,
+                                                  &Row::work_binder,
+                                                  &Row::work_gravity,
+                                                  &Row::energy_tow,
+                                                  &Row::energy_shear,
+                                                  &Row::energy_bending,
+                                                  &Row::energy_twist,
+                                                  &Row::energy_compaction,
+                                                  &Row::energy_kinetic,
+                                                  &Row::energy_press,
+                                                  &Row::friction_punch,
+                                                  &Row::friction_die,
+                                                  &Row::friction_binder,
+                                                  &Row::dissipation_shear_rate,
+                                                  &Row::dissipation_shear_hysteresis,
+                                                  &Row::dissipation_artefact,
+                                                  &Row::dissipation_numerical,
+                                                  &Row::ledger_residual,
+                                                  &Row::force_balance};
+  Row row;
+  row.time = 0.43, row.punch_displacement = 0.0625, row.punch_force = 103, row.die_force = 104;
+  row.binder_force = 105;
   row.draw_in_max = 0.0078125, row.shear_angle_max = std::acos(-1.0) / 6.0, row.tow_strain_max = 8e-4;
-  row.newton_iterations = 9, row.lag_iterations = 10, row.work_punch = 11, row.work_binder = 12,
-  row.energy_tow = 13;
-  row.energy_shear = 14, row.energy_bending = 15, row.energy_twist = 16, row.energy_compaction = 17;
-  row.energy_kinetic = 18, row.friction_punch = 19, row.friction_die = 20, row.friction_binder = 21;
-  row.dissipation_shear_rate = 22, row.dissipation_shear_hysteresis = 23;
-  row.dissipation_artefact = 24, row.dissipation_numerical = 25, row.ledger_residual = 26;
-  row.force_balance = 27, row.folded_nodes = 28, row.near_nodes = 29, row.self_crossings = 30;
-  row.friction_work_outside = 31;
+  row.newton_iterations = 109, row.lag_iterations = 110;
+  std::size_t column = 10;
+  for (double Row::*member : in_joule_and_newton) row.*member = static_cast<double>(101 + column++);
+  for (int Row::*member : {&Row::folded_nodes, &Row::near_nodes, &Row::self_crossings})
+    row.*member = static_cast<int>(101 + column++);
+  row.friction_work_outside = static_cast<double>(101 + column++);
+  row.punch_deflection = 1e-3 * static_cast<double>(101 + column++);
   const std::vector<std::string> cells = split(split(history_csv(std::vector{row}), '\n')[1], ',');
-  REQUIRE(cells.size() == 31);
+  REQUIRE(cells.size() == column);
   CHECK(cells[0] == "0.43");
   CHECK(cells[1] == "62.5");
   CHECK(cells[5] == "7.8125");
   CHECK(std::stod(cells[6]) == Approx(30.0).epsilon(1e-15));
   CHECK(cells[7] == "0.0008");
-  for (const std::size_t c : {2u, 3u, 4u}) CHECK(cells[c] == std::to_string(c + 1));
-  for (std::size_t c = 8; c < cells.size(); ++c) CHECK(cells[c] == std::to_string(c + 1));
+  for (std::size_t c : {2, 3, 4}) CHECK(cells[c] == std::to_string(101 + c));
+  for (std::size_t c = 8; c < cells.size(); ++c) CHECK(cells[c] == std::to_string(101 + c));
 }
 
 TEST_CASE("a value that is not finite is named and not written", "[outputs]") {

@@ -1,0 +1,73 @@
+#include "macroscale/history_row.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include "macroscale/folds.h"
+#include "macroscale/quality.h"
+
+namespace heddle::macroscale {
+
+namespace {
+
+constexpr int punch = 0;  // the first tool of a stamping
+
+}  // namespace
+
+void add_to_history(HistoryRow& row, const StepAccount& account, const Scene& scene) {
+  const StepLedger& l = account.ledger;
+  std::array<double, 3> friction{}, force{};  // of punch, die, binder, as Role counts them
+  for (std::size_t k = 0; k < scene.tools.size(); ++k) {
+    const auto role = static_cast<std::size_t>(scene.tools[k].role);
+    friction[role] += l.friction[k];
+    force[role] += account.forces.on_tool[k].z();
+  }
+  row.work_punch += l.work_driven;
+  row.work_binder += l.work_loaded;
+  row.work_gravity += l.work_dead;
+  row.energy_tow += l.tow;
+  row.energy_shear += l.shear;
+  row.energy_bending += l.bending;
+  row.energy_twist += l.twist;
+  row.energy_compaction += l.compaction;
+  row.energy_kinetic += l.kinetic;
+  row.energy_press += l.press;
+  row.friction_punch += friction[0];
+  row.friction_die += friction[1];
+  row.friction_binder += friction[2];
+  row.dissipation_shear_rate += l.shear_rate;
+  row.dissipation_shear_hysteresis += l.shear_hysteresis;
+  row.dissipation_artefact += l.artefact;
+  row.dissipation_numerical += l.numerical;
+  row.ledger_residual = ledger_residual(row);
+  row.friction_work_outside += l.friction_outside;
+  row.punch_force = force[0];
+  row.die_force = force[1];
+  row.binder_force = force[2];
+  row.force_balance = std::max(row.force_balance, account.forces.imbalance);
+}
+
+void finish_row(HistoryRow& row, const BlankState& blank, const State& state, const System& system) {
+  const Scene& scene = system.scene();
+  row.punch_displacement = -state.tool_z[punch];
+  row.punch_deflection = system.tool_position(state, punch) - state.tool_z[punch];
+  measure_blank(row, blank, state, scene);
+  if (scene.heat) row.heat = heat_row(scene, state.heat, state.time);
+}
+
+void measure_blank(HistoryRow& row, const BlankState& blank, const State& state, const Scene& scene) {
+  row.time = state.time;
+  row.draw_in_max = largest_draw_in(scene.blank, state);
+  row.shear_angle_max = 0.0;
+  for (double angle : blank.shear_angle) row.shear_angle_max = std::max(row.shear_angle_max, std::abs(angle));
+  row.tow_strain_max = 0.0;
+  for (const auto& strain : blank.tow_strain)
+    row.tow_strain_max = std::max({row.tow_strain_max, strain[0], strain[1]});
+  const Folds folds = find_folds(blank, scene.fabric->thickness);
+  row.folded_nodes = folds.folded;
+  row.near_nodes = folds.near;
+  row.self_crossings = folds.crossings;
+}
+
+}  // namespace heddle::macroscale
