@@ -17,13 +17,16 @@ struct StepLedger {
   double work_held = 0.0;    ///< by supports that move, and dead loads
   double tow = 0.0, shear = 0.0, bending = 0.0, twist = 0.0, compaction = 0.0;  ///< change of stored energy
   double kinetic = 0.0;                                                         ///< change of kinetic energy
-  std::vector<double> friction;                                                 ///< dissipated at each tool
-  double shear_rate = 0.0;  ///< dissipated by rate-dependent shear: force times increment
-  double artefact = 0.0;    ///< dissipated by the stabilisation switch
-  double numerical = 0.0;   ///< of backward Euler: 1/2 |dv|^2_M and the second-order part of each stored term
+  double compaction_plies = 0.0;  ///< change of what is stored between plies
+  std::vector<double> friction;   ///< dissipated at each tool, and behind them between plies
+  double shear_rate = 0.0;        ///< dissipated by rate-dependent shear: force times increment
+  double artefact = 0.0;          ///< dissipated by the stabilisation switch
+  double numerical = 0.0;  ///< of backward Euler: 1/2 |dv|^2_M and the second-order part of each stored term
+  double pairing =
+      0.0;  ///< part of `numerical`: plies meet elsewhere at the end than where they were held to
   double friction_outside = 0.0;  ///< share of friction done outside the calibrated box [J]
 
-  double stored() const { return tow + shear + bending + twist + compaction + kinetic; }
+  double stored() const { return tow + shear + bending + twist + compaction + compaction_plies + kinetic; }
   double dissipated() const;
   double work() const { return work_driven + work_loaded + work_held; }
   double residual() const { return work() - stored() - dissipated(); }

@@ -14,6 +14,7 @@ State initial_state(const Scene& scene) {
   state.corner_angle.assign(4 * scene.blank.quads.size(), 0.0);
   state.memory.assign(scene.tools.size(),
                       std::vector<friction::ContactState>(contact_count(scene.blank, scene.contact_sites)));
+  if (scene.blank.plies() > 1) state.memory.emplace_back(ply_points(scene.blank).size());
   state.heat = initial_heat(scene);
   return state;
 }

@@ -7,6 +7,10 @@
 
 namespace heddle::macroscale {
 
+/// The plies on one another where the closed binder leaves them: their middles a thickness apart less what
+/// nesting and the binder's pressure take, that of the stack at z = 0.
+Blank stamping_blank(const StampingSpec& spec, const mesoscale::FabricProperties& fabric);
+
 /// Blank, tools and laws of a stamping, tools in the order punch, die, binder. Fabric and friction must
 /// outlive the scene.
 Scene stamping_scene(const StampingSpec& spec, const mesoscale::FabricProperties& fabric,

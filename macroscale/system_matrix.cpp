@@ -32,6 +32,11 @@ int System::block(int row_node, int column_node) const {
 void System::build_pattern() {
   const Blank& blank = scene_.blank;
   const int nodes = blank.nodes();
+  block_start_.clear();
+  block_row_.clear();
+  corner_slots_.clear();
+  cell_slots_.clear();
+  for (auto& colour : colours_) colour.clear();
   std::vector<std::set<int>> rows(nodes);
   const auto couple = [&](int a, int b) { rows[std::min(a, b)].insert(std::max(a, b)); };
   for (int i = 0; i < nodes; ++i) couple(i, i);
@@ -43,6 +48,9 @@ void System::build_pattern() {
     couple(t.middle, t.after);
     couple(t.before, t.after);
   }
+  for (std::size_t k = 0; k < coupling_.quad.size(); ++k)
+    for (const int near : coupled_nodes(blank, coupling_, k))
+      for (const int own : blank.quads[ply_points_[k].quad]) couple(own, near);
   block_start_.push_back(0);
   for (const auto& column : rows) {
     block_row_.insert(block_row_.end(), column.begin(), column.end());
@@ -121,11 +129,11 @@ void System::assemble_constant() {
 }
 
 void System::add_corners(const StepData& step, const Position& at, Filter filter) {
-  const CornerLaw law = corner_law(step);
+  const std::vector<CornerLaw> laws = corner_laws(step);
   for (const auto& colour : colours_)
     for_each(static_cast<int>(colour.size()), [&](int index) {
       const int q = colour[index];
-      const CornerLaw here = trimmed(law, scene_.blank.share[q]);
+      const CornerLaw here = trimmed(laws[scene_.blank.ply_of_quad(q)], scene_.blank.share[q]);
       for (int k = 0; k < 4; ++k) {
         const CornerHessian h = corner_hessian(here, at.corners[4 * q + k], filter);
         const std::array<Matrix3d, 6> part = {h.aa + h.ab + h.ab.transpose() + h.bb,
@@ -227,6 +235,7 @@ void System::assemble(const StepData& step, const Position& at, Filter filter, d
   });
   add_corners(step, at, filter);
   add_contact(step, at, filter);
+  add_contact_of_plies(step, at, filter);
   write_matrix(shift);
 }
 

@@ -122,9 +122,16 @@ Canvas ledger_chart(const Rows& history) {
   chart.x = stroke_axis;
   chart.y = {"Energy", "J"};
   chart.at = stroke(history);
-  for (const Entry& entry : entries) {
+  const auto add = [&](const Entry& entry) {
     chart.bands.push_back({entry.name, {}, column(history, 1.0, entry.value)});
     chart.band_style.push_back(entry.style);
+  };
+  const bool plies_rub = std::any_of(history.begin(), history.end(),
+                                     [](const HistoryRow& row) { return row.friction_plies != 0.0; });
+  for (const Entry& entry : entries) {
+    add(entry);
+    if (plies_rub && entry.value == &HistoryRow::friction_punch)
+      add({"Friction, plies", &HistoryRow::friction_plies, 7});
   }
   Series work{"Work of the tools", {}, column(history, 1.0, &HistoryRow::work_punch)};
   for (std::size_t i = 0; i < history.size(); ++i) work.y[i] += history[i].work_binder;

@@ -99,10 +99,11 @@ TEST_CASE("the history table has the columns other programs rely on", "[outputs]
       "tow_strain_max,newton_iterations,lag_iterations,work_punch_J,work_binder_J,energy_tow_J,energy_shear_"
       "J,"
       "energy_bending_J,energy_twist_J,energy_compaction_J,energy_kinetic_J,friction_punch_J,friction_die_J,"
-      "friction_binder_J,dissipation_shear_rate_J,dissipation_artefact_J,dissipation_numerical_J,ledger_"
+      "friction_binder_J,friction_plies_J,dissipation_shear_rate_J,dissipation_artefact_J,dissipation_"
+      "numerical_J,ledger_"
       "residual_J,"
       "force_balance_N,friction_work_outside_calibration_J");
-  for (const std::string& line : lines) CHECK(split(line, ',').size() == 27);
+  for (const std::string& line : lines) CHECK(split(line, ',').size() == 28);
 }
 
 TEST_CASE("every history column holds its own quantity in its own unit", "[outputs]") {
@@ -114,17 +115,18 @@ TEST_CASE("every history column holds its own quantity in its own unit", "[outpu
   row.energy_tow = 13;
   row.energy_shear = 14, row.energy_bending = 15, row.energy_twist = 16, row.energy_compaction = 17;
   row.energy_kinetic = 18, row.friction_punch = 19, row.friction_die = 20, row.friction_binder = 21;
-  row.dissipation_shear_rate = 22, row.dissipation_artefact = 23, row.dissipation_numerical = 24;
-  row.ledger_residual = 25, row.force_balance = 26, row.friction_work_outside = 27;
+  row.friction_plies = 22, row.dissipation_shear_rate = 23, row.dissipation_artefact = 24;
+  row.dissipation_numerical = 25, row.ledger_residual = 26, row.force_balance = 27;
+  row.friction_work_outside = 28;
   const std::vector<std::string> cells = split(split(history_csv(std::vector{row}), '\n')[1], ',');
-  REQUIRE(cells.size() == 27);
+  REQUIRE(cells.size() == 28);
   CHECK(cells[0] == "0.43");
   CHECK(cells[1] == "62.5");
   CHECK(cells[5] == "7.8125");
   CHECK(std::stod(cells[6]) == Approx(30.0).epsilon(1e-15));
   CHECK(cells[7] == "0.0008");
-  for (const std::size_t c : {2u,  3u,  4u,  8u,  9u,  10u, 11u, 12u, 13u, 14u, 15u,
-                              16u, 17u, 18u, 19u, 20u, 21u, 22u, 23u, 24u, 25u, 26u}) {
+  for (const std::size_t c : {2u,  3u,  4u,  8u,  9u,  10u, 11u, 12u, 13u, 14u, 15u, 16u,
+                              17u, 18u, 19u, 20u, 21u, 22u, 23u, 24u, 25u, 26u, 27u}) {
     CHECK(cells[c] == std::to_string(c + 1));
   }
 }
