@@ -298,6 +298,8 @@ Blank trimmed_blank(const Outline& along_tows, double spacing, std::array<double
   number_nodes(blank, trimming, z);
   add_quads(blank, trimming);
   add_tow_lines(blank);
+  blank.end_node = blank.nodes();
+  blank.end_quad = static_cast<int>(blank.quads.size());
   return blank;
 }
 
@@ -310,7 +312,7 @@ std::array<Corner, 4> corners_of(const std::array<int, 4>& quad) {
            {quad[3], quad[2], quad[0], -1}}};
 }
 
-MaterialPoint Blank::locate(const Vector2d& x) const {
+MaterialPoint Ply::locate(const Vector2d& x) const {
   const auto [c, s] = warp;
   std::array<double, 2> at = {(c * x.x() + s * x.y() - centre[0]) / spacing[0] + 0.5 * nu,
                               (c * x.y() - s * x.x() - centre[1]) / spacing[1] + 0.5 * nv};
@@ -347,6 +349,50 @@ Blank make_blank(std::array<double, 2> size, double spacing, double orientation,
   Blank blank = trimmed_blank(rectangle(size), spacing, warp, z);
   add_edge(blank, turned(rectangle(size), warp[0], warp[1]));
   return blank;
+}
+
+namespace {
+
+template <class List>
+void append(List& list, const List& more) {
+  list.insert(list.end(), more.begin(), more.end());
+}
+
+// The same ply with the numbers it has behind so many nodes and quads.
+void renumber(Blank& ply, int nodes, int quads) {
+  const auto shift = [](int& number, int by) {
+    if (number >= 0) number += by;
+  };
+  for (int& node : ply.node_at) shift(node, nodes);
+  for (int& quad : ply.quad_at) shift(quad, quads);
+  for (auto& quad : ply.quads)
+    for (int& node : quad) node += nodes;
+  for (TowSegment& s : ply.segments) s.from += nodes, s.to += nodes;
+  for (TowTriple& t : ply.triples) t.before += nodes, t.middle += nodes, t.after += nodes;
+  for (CellPiece& piece : ply.pieces) piece.quad += quads;
+  for (EdgePoint& edge : ply.edge) edge.point.quad += quads;
+  ply.first_node += nodes, ply.end_node += nodes;
+  ply.first_quad += quads, ply.end_quad += quads;
+}
+
+}  // namespace
+
+Blank stacked(std::vector<Blank> plies) {
+  Blank all = std::move(plies.at(0));
+  for (std::size_t k = 1; k < plies.size(); ++k) {
+    Blank& ply = plies[k];
+    renumber(ply, all.nodes(), static_cast<int>(all.quads.size()));
+    append(all.reference, ply.reference);
+    append(all.grid, ply.grid);
+    append(all.quads, ply.quads);
+    append(all.share, ply.share);
+    append(all.segments, ply.segments);
+    append(all.triples, ply.triples);
+    append(all.node_area, ply.node_area);
+    append(all.pieces, ply.pieces);
+    all.above.push_back(std::move(static_cast<Ply&>(ply)));
+  }
+  return all;
 }
 
 }  // namespace heddle::macroscale

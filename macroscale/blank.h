@@ -45,27 +45,19 @@ struct EdgePoint {
 };
 
 /// Tow-aligned structured grid of one ply, trimmed to an outline: lines i across the warp, j across the weft
-/// direction. Every energy of a cell carries its area share, the part of the cell inside the outline. Trusses
-/// (edges), shear corners and bending triples share the nodes, so stiff tows cannot lock against shear.
-struct Blank {
-  int nu = 0, nv = 0;                      ///< cells of the grid along warp and weft, before trimming
-  std::array<double, 2> spacing{};         ///< [m]
-  std::array<double, 2> warp{1.0, 0.0};    ///< direction of the warp in the x-y plane, unit
-  std::array<double, 2> centre{};          ///< of the grid, along warp and weft [m]
-  std::vector<Eigen::Vector3d> reference;  ///< node positions, flat, stress-free [m]
-  std::vector<std::array<int, 2>> grid;    ///< (i, j) of each node, ascending
-  std::vector<std::array<int, 4>> quads;   ///< (i,j) (i+1,j) (i+1,j+1) (i,j+1)
-  std::vector<double> share;               ///< per quad: its material area over the cell's; 1 = whole
-  std::vector<TowSegment> segments;
-  std::vector<TowTriple> triples;
-  std::vector<double> node_area;  ///< tributary area [m^2]
-  std::vector<CellPiece> pieces;  ///< of all quads that the outline cuts, by quad
-  std::vector<EdgePoint> edge;    ///< along the outer edge, about a spacing apart, corners left out
-  Outline outline;                ///< flat, in x and y
-  std::vector<int> node_at;       ///< node of (i, j) at i * (nv + 1) + j, or -1
-  std::vector<int> quad_at;       ///< quad of cell (i, j) at i * nv + j, or -1
+/// direction. Nodes and quads have the numbers they have in the blank.
+struct Ply {
+  int nu = 0, nv = 0;                    ///< cells of the grid along warp and weft, before trimming
+  std::array<double, 2> spacing{};       ///< [m]
+  std::array<double, 2> warp{1.0, 0.0};  ///< direction of the warp in the x-y plane, unit
+  std::array<double, 2> centre{};        ///< of the grid, along warp and weft [m]
+  std::vector<EdgePoint> edge;           ///< along the outer edge, about a spacing apart, corners left out
+  Outline outline;                       ///< flat, in x and y
+  std::vector<int> node_at;              ///< node of (i, j) at i * (nv + 1) + j, or -1
+  std::vector<int> quad_at;              ///< quad of cell (i, j) at i * nv + j, or -1
+  int first_node = 0, end_node = 0;      ///< its nodes are [first_node, end_node)
+  int first_quad = 0, end_quad = 0;
 
-  int nodes() const { return static_cast<int>(reference.size()); }
   /// Node of grid lines i, j; -1 where trimming left none.
   int node(int i, int j) const { return node_at[i * (nv + 1) + j]; }
   /// Quad between lines i, i + 1 and j, j + 1; -1 outside the grid and where trimming left none.
@@ -73,6 +65,36 @@ struct Blank {
   double corner_area() const { return 0.25 * spacing[0] * spacing[1]; }  ///< of a whole cell [m^2]
   /// A point of the flat blank in its cell, or in the nearest one left [m].
   MaterialPoint locate(const Eigen::Vector2d& reference) const;
+};
+
+/// One ply, or several on one another: `Ply` is the lowest, `above` are the others, bottom first. The lists
+/// of nodes and elements hold all plies, one after the other, so whatever sums over elements need not know of
+/// plies. Every energy of a cell carries its area share, the part of the cell inside the outline. Trusses
+/// (edges), shear corners and bending triples share the nodes, so stiff tows cannot lock against shear.
+struct Blank : Ply {
+  std::vector<Eigen::Vector3d> reference;  ///< node positions, flat, stress-free [m]
+  std::vector<std::array<int, 2>> grid;    ///< (i, j) of each node in its ply, ascending
+  std::vector<std::array<int, 4>> quads;   ///< (i,j) (i+1,j) (i+1,j+1) (i,j+1)
+  std::vector<double> share;               ///< per quad: its material area over the cell's; 1 = whole
+  std::vector<TowSegment> segments;
+  std::vector<TowTriple> triples;
+  std::vector<double> node_area;  ///< tributary area [m^2]
+  std::vector<CellPiece> pieces;  ///< of all quads that the outline cuts, by quad
+  std::vector<Ply> above;
+
+  int nodes() const { return static_cast<int>(reference.size()); }
+  int plies() const { return 1 + static_cast<int>(above.size()); }
+  const Ply& ply(int k) const { return k == 0 ? *this : above[static_cast<std::size_t>(k) - 1]; }
+  int ply_of_node(int node) const {
+    int k = 0;
+    while (node >= ply(k).end_node) ++k;
+    return k;
+  }
+  int ply_of_quad(int quad) const {
+    int k = 0;
+    while (quad >= ply(k).end_quad) ++k;
+    return k;
+  }
 };
 
 /// Cells with a smaller share are dropped and their area given to the neighbour that holds most: their outer
@@ -90,5 +112,8 @@ Blank make_blank(const Outline& outline, double spacing, double orientation, dou
 /// Rectangle of a given size along warp and weft, centred at the origin and turned as a whole: no cell is
 /// cut.
 Blank make_blank(std::array<double, 2> size, double spacing, double orientation = 0.0, double z = 0.0);
+
+/// Plies on one another as one blank, bottom first. @param plies  at least one, each of one ply
+Blank stacked(std::vector<Blank> plies);
 
 }  // namespace heddle::macroscale

@@ -108,6 +108,22 @@ void check_blank(Findings& f, const BlankSpec& blank, double tool_edge,
   }
 }
 
+void check_plies(Findings& f, const BlankSpec& blank, bool heat) {
+  const std::string plies = fmt::format("{}", blank.plies);
+  f.demand(blank.plies >= 1 && blank.plies <= 16, "blank.plies.range"_rule, "blank.plies", plies,
+           "must be 1 to 16", "Each ply has a grid of its own and costs as much as one, and more.");
+  f.demand(blank.layup.empty() || blank.layup.size() == static_cast<std::size_t>(std::max(blank.plies, 0)),
+           "blank.layup.plies"_rule, "blank.layup", fmt::format("{} angles", blank.layup.size()),
+           fmt::format("must be one angle a ply; blank.plies is {}", plies),
+           "Give the turn of each ply, bottom first, or leave it out: then all lie alike.", {"blank.plies"});
+  f.demand(blank.nesting >= 0.0 && std::isfinite(blank.nesting), "blank.nesting.range"_rule, "blank.nesting",
+           mm(blank.nesting), "must be >= 0",
+           "0 mm: plies lie a thickness apart. heddle weave with cell.plies: 2 says how much they nest.");
+  f.demand(!(heat && blank.plies > 1), "blank.plies.thermal"_rule, "blank.plies", plies,
+           "must be 1 in a run with temperatures: heat goes through one ply from tool to tool",
+           "Leave out `thermal`, or run one ply.", {"thermal"});
+}
+
 // A tool from a file has no numbers of its own: check_tools looks at its surface.
 void check_shapes(Findings& f, const PunchSpec& punch, const DieSpec& die, const BinderSpec& binder) {
   if (!punch.file) {
@@ -156,8 +172,7 @@ Problems check(const StampingSpec& spec) {
   f.demand(half <= 0.0 || process.stroke < half, "process.punch.stroke.reach"_rule, "process.punch.stroke",
            mm(process.stroke), fmt::format("must be less than half the blank ({})", mm(half)),
            "A deeper stroke pulls the blank out of the binder.", {size_key(blank)});
-  f.demand(blank.plies == 1, "blank.plies.range"_rule, "blank.plies", fmt::format("{}", blank.plies),
-           "must be 1", "Several plies come with a later version; run one.");
+  check_plies(f, blank, heat.has_value());
   check_shapes(f, punch, die, binder);
   f.demand(binder.mass > 0.0, "tools.binder.mass.range"_rule, "tools.binder.mass",
            fmt::format("{:g} kg", binder.mass), "must be > 0", "20 kg in the shipped case.");

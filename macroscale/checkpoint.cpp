@@ -16,7 +16,7 @@ namespace heddle::macroscale {
 namespace {
 
 // One name a member. A member added to HistoryRow must be added here too: the size tells.
-static_assert(sizeof(HistoryRow) == 29 * sizeof(double) + sizeof(std::optional<HeatRow>),
+static_assert(sizeof(HistoryRow) == 30 * sizeof(double) + sizeof(std::optional<HeatRow>),
               "HistoryRow has changed: name its new members here");
 template <class Row, class Visit>
 void each_number(Row& r, const Visit& visit) {
@@ -46,6 +46,7 @@ void each_number(Row& r, const Visit& visit) {
   visit("friction_punch", r.friction_punch);
   visit("friction_die", r.friction_die);
   visit("friction_binder", r.friction_binder);
+  visit("friction_plies", r.friction_plies);
   visit("dissipation_shear_rate", r.dissipation_shear_rate);
   visit("dissipation_shear_hysteresis", r.dissipation_shear_hysteresis);
   visit("dissipation_artefact", r.dissipation_artefact);
@@ -154,11 +155,14 @@ constexpr std::size_t memory_size =
 static_assert(sizeof(friction::ContactState) == memory_size * sizeof(double),
               "ContactState has changed: keep its new members");
 
+void append_memory(std::vector<double>& flat, const std::vector<friction::ContactState>& row) {
+  for (const friction::ContactState& m : row)
+    std::apply([&](const auto&... member) { (flat.push_back(member), ...); }, memory_members(m));
+}
+
 std::vector<double> flat_memory(const State& state) {
   std::vector<double> flat;
-  for (const auto& of_tool : state.memory)
-    for (const friction::ContactState& m : of_tool)
-      std::apply([&](const auto&... member) { (flat.push_back(member), ...); }, memory_members(m));
+  for (std::size_t k = 0; k < state.tool_z.size(); ++k) append_memory(flat, state.memory[k]);
   return flat;
 }
 
@@ -177,6 +181,28 @@ std::vector<ShearMemory> read_shear_memory(const Hdf5Reader& file, const std::st
   if (!file.has(path)) return memory;
   for (const auto& row : read_rows<4>(file, path)) memory.push_back({row[0], row[1], row[2], row[3]});
   return memory;
+}
+
+// Nothing is written of a single ply.
+void write_plies(Hdf5Writer& file, const std::string& group, const State& state) {
+  if (state.memory.size() == state.tool_z.size()) return;
+  std::vector<double> flat;
+  append_memory(flat, state.memory.back());
+  file.write(group + "/contact_memory", flat, {state.memory.back().size(), memory_size});
+  file.write(group + "/coupled_quad", state.coupling.quad);
+  write_rows(file, group + "/coupled_place", state.coupling.local);
+}
+
+void read_plies(const Hdf5Reader& file, const std::string& group, State& state) {
+  if (!file.has(group + "/contact_memory")) return;
+  auto& row = state.memory.emplace_back();
+  for (const auto& flat : read_rows<memory_size>(file, group + "/contact_memory")) {
+    std::size_t c = 0;
+    std::apply([&](auto&... member) { ((member = flat[c++]), ...); }, memory_members(row.emplace_back()));
+  }
+  state.coupling = {file.integers(group + "/coupled_quad"), read_rows<2>(file, group + "/coupled_place")};
+  if (state.coupling.quad.size() != row.size() || state.coupling.local.size() != row.size())
+    throw Hdf5Error(group + " has parts that do not fit");
 }
 
 void write_heat(Hdf5Writer& file, const std::string& group, const BlankHeat& heat) {
@@ -214,8 +240,9 @@ void write_state(Hdf5Writer& file, const std::string& group, const State& state)
   file.write(group + "/tool_z", state.tool_z);
   file.write(group + "/corner_angle", state.corner_angle);
   write_shear_memory(file, group + "/shear_memory", state.shear_memory);
-  const std::size_t tools = state.memory.size(), nodes = tools > 0 ? state.memory[0].size() : 0;
+  const std::size_t tools = state.tool_z.size(), nodes = tools > 0 ? state.memory[0].size() : 0;
   file.write(group + "/contact_memory", flat_memory(state), {tools, nodes, memory_size});
+  write_plies(file, group + "/plies", state);
   write_heat(file, group + "/heat", state.heat);
 }
 
@@ -242,6 +269,7 @@ State read_state(const Hdf5Reader& file, const std::string& group) {
                  memory_members(of_tool.emplace_back()));
     }
   }
+  read_plies(file, group + "/plies", state);
   state.heat = read_heat(file, group + "/heat");
   return state;
 }
@@ -267,6 +295,11 @@ void write_shared(Hdf5Writer& file, const std::string& group, const BlankState& 
   file.write(group + "/piece_quad", piece_quad);
   write_rows(file, group + "/piece_corners", piece_corners);
   write_rows(file, group + "/outline", blank.outline.outer);
+  std::vector<std::array<int, 8>> plies;
+  for (const PlyRange& p : blank.plies)
+    plies.push_back(
+        {p.nu, p.nv, p.first_node, p.end_node, p.first_quad, p.end_quad, p.first_edge, p.end_edge});
+  if (!plies.empty()) write_rows(file, group + "/plies", plies);
   file.write(group + "/holes", static_cast<int>(blank.outline.holes.size()));
   for (std::size_t k = 0; k < blank.outline.holes.size(); ++k)
     write_rows(file, fmt::format("{}/hole_{}", group, k), blank.outline.holes[k]);
@@ -291,6 +324,9 @@ BlankState read_shared(const Hdf5Reader& file, const std::string& group) {
     blank.pieces.push_back(piece);
   }
   blank.outline.outer = read_rows<2>(file, group + "/outline");
+  if (file.has(group + "/plies"))
+    for (const auto& p : read_index_rows<8>(file, group + "/plies"))
+      blank.plies.push_back({p[0], p[1], p[2], p[3], p[4], p[5], p[6], p[7]});
   for (int k = 0; k < file.integer(group + "/holes"); ++k)
     blank.outline.holes.push_back(read_rows<2>(file, fmt::format("{}/hole_{}", group, k)));
   return blank;
@@ -305,12 +341,15 @@ void each_field(Blank& blank, const Visit& visit) {
   visit("friction_coefficient", blank.friction_coefficient);
   visit("hersey", blank.hersey);
 }
+// And those that not every run has.
 template <class Blank, class Visit>
-void each_heat_field(Blank& blank, const Visit& visit) {
+void each_optional_field(Blank& blank, const Visit& visit) {
   visit("temperature_bottom", blank.heat.bottom);
   visit("temperature_top", blank.heat.top);
   visit("temperature_mean", blank.heat.mean);
   visit("crystallised", blank.heat.crystallised);
+  visit("ply_slip", blank.ply_slip);
+  visit("ply_pressure", blank.ply_pressure);
 }
 
 }  // namespace
@@ -325,7 +364,7 @@ void write_instant(Hdf5Writer& file, const std::string& group, const BlankState&
   each_field(blank, [&](const char* name, const std::vector<double>& field) {
     file.write(group + "/" + name, field);
   });
-  each_heat_field(blank, [&](const char* name, const std::vector<double>& field) {
+  each_optional_field(blank, [&](const char* name, const std::vector<double>& field) {
     if (!field.empty()) file.write(group + "/" + name, field);
   });
   std::vector<std::array<double, 6>> edge;
@@ -338,6 +377,7 @@ BlankState read_instant(const Hdf5Reader& file, const std::string& group, const 
   BlankState blank;
   blank.nu = shared.nu;
   blank.nv = shared.nv;
+  blank.plies = shared.plies;
   blank.grid = shared.grid;
   blank.reference = shared.reference;
   blank.quads = shared.quads;
@@ -356,7 +396,7 @@ BlankState read_instant(const Hdf5Reader& file, const std::string& group, const 
     field = file.doubles(group + "/" + name);
     whole &= field.size() == nodes;
   });
-  each_heat_field(blank, [&](const char* name, std::vector<double>& field) {
+  each_optional_field(blank, [&](const char* name, std::vector<double>& field) {
     if (!file.has(group + "/" + name)) return;
     field = file.doubles(group + "/" + name);
     whole &= field.size() == nodes;
@@ -381,6 +421,10 @@ void write(Hdf5Writer& file, const std::string& group, const StampingCheckpoint&
   file.write(group + "/peak_pressure", checkpoint.peak_pressure);
   file.write(group + "/peak_swing", checkpoint.peak_swing);
   file.write(group + "/falling_branch", checkpoint.falling_branch ? 1 : 0);
+  if (checkpoint.patterns > 0) {
+    file.write(group + "/patterns", checkpoint.patterns);
+    file.write(group + "/pairing", checkpoint.pairing);
+  }
   file.write(group + "/rejected_steps", checkpoint.rejected_steps);
   file.write(group + "/newton_iterations", checkpoint.newton_iterations);
   file.write(group + "/factorisations", checkpoint.factorisations);
@@ -406,6 +450,10 @@ StampingCheckpoint read_checkpoint(const Hdf5Reader& file, const std::string& gr
   checkpoint.peak_pressure = file.number(group + "/peak_pressure");
   checkpoint.peak_swing = file.number(group + "/peak_swing");
   checkpoint.falling_branch = file.integer(group + "/falling_branch") != 0;
+  if (file.has(group + "/patterns")) {
+    checkpoint.patterns = file.integer(group + "/patterns");
+    checkpoint.pairing = file.number(group + "/pairing");
+  }
   checkpoint.rejected_steps = file.integer(group + "/rejected_steps");
   checkpoint.newton_iterations = file.integer(group + "/newton_iterations");
   checkpoint.factorisations = file.integer(group + "/factorisations");
@@ -420,12 +468,14 @@ std::string fault_of(const StampingCheckpoint& c, const Blank& blank, ContactSit
   const auto loaded = static_cast<std::size_t>(sizes.unknowns_of_tools);
   const std::size_t nodes = static_cast<std::size_t>(blank.nodes());
   const auto contacts = static_cast<std::size_t>(contact_count(blank, sites));
+  const std::size_t between = ply_points(blank).size();
   const auto unknowns = static_cast<Eigen::Index>(3 * nodes + loaded);
   const bool fits = c.state.x.size() == unknowns && c.state.v.size() == unknowns &&
                     c.state.tool_z.size() == tools && c.state.corner_angle.size() == 4 * blank.quads.size() &&
-                    c.state.memory.size() == tools &&
-                    std::all_of(c.state.memory.begin(), c.state.memory.end(),
-                                [&](const auto& m) { return m.size() == contacts; });
+                    c.state.memory.size() == tools + (between > 0 ? 1 : 0) &&
+                    std::all_of(c.state.memory.begin(), c.state.memory.begin() + tools,
+                                [&](const auto& m) { return m.size() == contacts; }) &&
+                    (between == 0 || c.state.memory.back().size() == between);
   if (!fits) return "its state is of another blank or other tools";
   if (c.step < 0 || c.step > steps || c.history.size() != static_cast<std::size_t>(c.step))
     return fmt::format("it stands at step {} with {} rows of history, and the run has {} steps", c.step,

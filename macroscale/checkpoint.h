@@ -21,6 +21,8 @@ struct StampingCheckpoint {
   double peak_pressure = 0.0;       ///< of any node on any tool [Pa]
   double peak_swing = 0.0;          ///< share of friction that swung in an accepted step [-]
   bool falling_branch = false;
+  int patterns = 0;      ///< of the matrix between plies, made anew
+  double pairing = 0.0;  ///< sum of sizes of StepLedger::pairing [J]
   int rejected_steps = 0, newton_iterations = 0, factorisations = 0;
   std::vector<HistoryRow> history;  ///< one row a step done
   std::vector<HeatRow> hold;        ///< after the last step, where there is a hold

@@ -26,9 +26,10 @@ std::array<double, 4> weights_at(std::size_t corner) {
 
 TowDirections at_node(const Blank& blank, const VectorXd& x, int node) {
   const auto [i, j] = blank.grid[node];
+  const Ply& ply = blank.ply(blank.ply_of_node(node));
   const auto neighbour = [&](int line_i, int line_j) -> Vector3d {
-    const bool outside = line_i < 0 || line_j < 0 || line_i > blank.nu || line_j > blank.nv;
-    const int n = outside ? -1 : blank.node(line_i, line_j);
+    const bool outside = line_i < 0 || line_j < 0 || line_i > ply.nu || line_j > ply.nv;
+    const int n = outside ? -1 : ply.node(line_i, line_j);
     return x.segment<3>(3 * (n < 0 ? node : n));
   };
   return {neighbour(i + 1, j) - neighbour(i - 1, j), neighbour(i, j + 1) - neighbour(i, j - 1)};
@@ -58,7 +59,8 @@ std::vector<ContactPoint> contact_points(const Blank& blank, ContactSites sites)
   }
   for (std::size_t q = 0; q < blank.quads.size(); ++q)
     for (std::size_t corner = 0; corner < 4; ++corner)
-      points.push_back({blank.quads[q], weights_at(corner), 4, blank.share[q] * blank.corner_area()});
+      points.push_back({blank.quads[q], weights_at(corner), 4,
+                        blank.share[q] * blank.ply(blank.ply_of_quad(static_cast<int>(q))).corner_area()});
   return points;
 }
 

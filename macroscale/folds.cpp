@@ -8,6 +8,8 @@
 
 #include <Eigen/Geometry>
 
+#include "macroscale/ply_state.h"
+
 namespace heddle::macroscale {
 
 namespace {
@@ -275,11 +277,30 @@ std::vector<FoldPlace> places(const Sheet& sheet, const Folds& folds, const std:
   return all;
 }
 
+// Each ply by itself: what lies on one another in a stack is meant to.
+Folds folds_of_plies(const BlankState& blank, double thickness) {
+  Folds all;
+  all.reach = thickness;
+  for (int k = 0; k < ply_count(blank); ++k) {
+    const Folds one = find_folds(ply_of(blank, k), thickness);
+    all.turn.insert(all.turn.end(), one.turn.begin(), one.turn.end());
+    all.distance.insert(all.distance.end(), one.distance.begin(), one.distance.end());
+    all.place.insert(all.place.end(), one.place.begin(), one.place.end());
+    all.folded += one.folded;
+    all.near += one.near;
+    all.crossings += one.crossings;
+  }
+  std::stable_sort(all.place.begin(), all.place.end(),
+                   [](const auto& a, const auto& b) { return a.nodes > b.nodes; });
+  return all;
+}
+
 }  // namespace
 
 Folds find_folds(const BlankState& blank, double thickness) {
   if (blank.position.size() != blank.grid.size() || blank.reference.size() != blank.grid.size())
     throw std::invalid_argument("find_folds: one place in the grid, flat and formed, a node");
+  if (!blank.plies.empty()) return folds_of_plies(blank, thickness);
   Folds folds;
   folds.reach = thickness;
   if (blank.quads.empty()) return folds;

@@ -41,6 +41,35 @@ double slip_angle(const TowDirections& tows, const Vector3d& normal, const Vecto
   return std::atan2(side * normal.dot(warp.cross(slip)), warp.dot(slip));
 }
 
+// Between plies there is no tool: both sides are as warm as the fabric. The direction of slip is against the
+// warp of the ply that looks, and so is the shear of the area that touches.
+void freeze_plies(const System& system, const StepData& step, const VectorXd& x,
+                  std::vector<FrictionPoint>& points) {
+  const Scene& scene = system.scene();
+  const int row = static_cast<int>(scene.tools.size());
+  if (!system.rubs(step, row)) return;
+  tbb::parallel_for(std::size_t{0}, points.size(), [&](std::size_t i) {
+    FrictionPoint& point = points[i];
+    point.memory = step.start->memory[row][i];
+    const PlyPair& pair = step.pairs[i];
+    const NormalContact contact = system.contact_of_plies(pair, x);
+    if (contact.pressure <= 0.0) return;
+    point.load = contact.pressure * pair.area;
+    point.normal = pair.normal;
+    const int quad = system.ply_points()[i].quad;
+    const auto corners = corners_of(scene.blank.quads[quad]);
+    double shear = 0.0;
+    for (std::size_t c = 0; c < 4; ++c)
+      shear += 0.25 * corners[c].sign * step.start->corner_angle[4 * static_cast<std::size_t>(quad) + c];
+    point.context = context_of(scene, contact.pressure, shear);
+    point.context.tool_temperature = scene.blank_temperature;
+    point.context.time_step = step.dt;
+    point.context.slip_angle =
+        slip_angle(tow_directions(scene.blank, system.ply_points()[i], x), point.normal,
+                   system.velocity_in_row(step, x, row, static_cast<int>(i)));
+  });
+}
+
 }  // namespace
 
 FrictionPoints freeze(const System& system, const StepData& step, const VectorXd& x,
@@ -48,6 +77,7 @@ FrictionPoints freeze(const System& system, const StepData& step, const VectorXd
   const Scene& scene = system.scene();
   const int count = system.contacts();
   FrictionPoints points(scene.tools.size(), std::vector<FrictionPoint>(count));
+  if (!step.pairs.empty()) points.emplace_back(step.pairs.size());
   if (step.frictionless || !scene.friction) return points;
   for (int k = 0; k < static_cast<int>(scene.tools.size()); ++k)
     tbb::parallel_for(0, count, [&, k](int i) {
@@ -66,6 +96,7 @@ FrictionPoints freeze(const System& system, const StepData& step, const VectorXd
       point.context.slip_angle = slip_angle(tow_directions(scene.blank, scene.contact_sites, x, i),
                                             point.normal, system.relative_velocity(step, x, k, i));
     });
+  if (!step.pairs.empty()) freeze_plies(system, step, x, points.back());
   return points;
 }
 
@@ -100,7 +131,7 @@ LagChange lag_change(const System& system, const StepData& step, const VectorXd&
   const auto of_point = [&](int k, int i) {
     const FrictionPoint &old = before[k][i], &now = after[k][i];
     if (old.load == 0.0 && now.load == 0.0) return Sums{};
-    const Vector3d v = system.relative_velocity(step, x, k, i);
+    const Vector3d v = system.velocity_in_row(step, x, k, i);
     const auto force = [&](const FrictionPoint& p) -> Vector3d {
       return p.load > 0.0 ? friction_force(settings, p, v) : Vector3d::Zero();
     };
@@ -135,7 +166,8 @@ FrictionPoints blend(const System& system, const StepData& step, const FrictionP
       point.load = kept + added;
       point.normal = normal;
       const friction::Context last = point.context;
-      point.context = context_of(scene, point.load / system.contact_area(step, i), shear_angle[i]);
+      const double angle = k < scene.tools.size() ? shear_angle[i] : last.shear_angle;
+      point.context = context_of(scene, point.load / system.area_in_row(step, static_cast<int>(k), i), angle);
       point.context.fabric_temperature = last.fabric_temperature;
       point.context.tool_temperature = last.tool_temperature;
       point.context.time_step = last.time_step;

@@ -10,11 +10,16 @@
 namespace heddle::macroscale {
 
 StampingSpec coarse_companion(const StampingSpec& spec) {
-  const Blank blank = make_blank(outline_of(spec.blank), spec.blank.spacing, spec.blank.orientation);
   StampingSpec coarse = spec;
   // One spacing serves both directions; the larger of the two halves neither less than asked for.
   const auto halved = [](double spacing, int cells) { return spacing * cells / ((cells + 1) / 2); };
-  coarse.blank.spacing = std::max(halved(blank.spacing[0], blank.nu), halved(blank.spacing[1], blank.nv));
+  const std::vector<double> layup = spec.blank.layup.empty() ? std::vector{0.0} : spec.blank.layup;
+  coarse.blank.spacing = 0.0;
+  for (const double turned : layup) {
+    const Blank ply = make_blank(outline_of(spec.blank), spec.blank.spacing, spec.blank.orientation + turned);
+    coarse.blank.spacing =
+        std::max({coarse.blank.spacing, halved(ply.spacing[0], ply.nu), halved(ply.spacing[1], ply.nv)});
+  }
   return coarse;
 }
 

@@ -30,12 +30,13 @@ void add_to_history(HistoryRow& row, const StepAccount& account, const Scene& sc
   row.energy_shear += l.shear;
   row.energy_bending += l.bending;
   row.energy_twist += l.twist;
-  row.energy_compaction += l.compaction;
+  row.energy_compaction += l.compaction + l.compaction_plies;
   row.energy_kinetic += l.kinetic;
   row.energy_press += l.press;
   row.friction_punch += friction[0];
   row.friction_die += friction[1];
   row.friction_binder += friction[2];
+  if (l.friction.size() > scene.tools.size()) row.friction_plies += l.friction.back();
   row.dissipation_shear_rate += l.shear_rate;
   row.dissipation_shear_hysteresis += l.shear_hysteresis;
   row.dissipation_artefact += l.artefact;

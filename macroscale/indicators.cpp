@@ -6,6 +6,8 @@
 
 #include <Eigen/Geometry>
 
+#include "macroscale/ply_state.h"
+
 namespace heddle::macroscale {
 
 namespace {
@@ -78,12 +80,30 @@ std::array<double, 2> straight_stiffness(const Surface& energy) {
   return {energy.evaluate(x, 0.0).fxx, energy.evaluate(0.0, y).fyy};
 }
 
+template <class T>
+void append(std::vector<T>& list, const std::vector<T>& more) {
+  list.insert(list.end(), more.begin(), more.end());
+}
+
+Indicators indicators_of_plies(const BlankState& blank, const mesoscale::FabricProperties& fabric) {
+  Indicators all;
+  for (int k = 0; k < ply_count(blank); ++k) {
+    const Indicators one = indicators(ply_of(blank, k), fabric);
+    append(all.tow_load, one.tow_load);
+    append(all.gap_opening, one.gap_opening);
+    append(all.wrinkle_height, one.wrinkle_height);
+    append(all.thickening, one.thickening);
+  }
+  return all;
+}
+
 }  // namespace
 
 Indicators indicators(const BlankState& blank, const mesoscale::FabricProperties& fabric) {
   const std::size_t nodes = blank.position.size();
   if (blank.grid.size() != nodes || blank.tow_strain.size() != nodes || blank.shear_angle.size() != nodes)
     throw std::invalid_argument("indicators: one grid place, tow strain and shear angle a node");
+  if (!blank.plies.empty()) return indicators_of_plies(blank, fabric);
   const GridIndex index(blank);
   const std::array<double, 2> stiffness = straight_stiffness(fabric.tension_energy);
   Indicators all;

@@ -25,11 +25,11 @@ struct CornerIncrements {
 CornerIncrements corner_increments(const System& system, const StepData& step, const State& end) {
   const Blank& blank = system.scene().blank;
   const State& start = *step.start;
-  const CornerLaw law = system.corner_law(step);
+  const std::vector<CornerLaw> laws = system.corner_laws(step);
   CornerIncrements sum;
   for (std::size_t q = 0; q < blank.quads.size(); ++q) {
     const auto corners = corners_of(blank.quads[q]);
-    CornerLaw here = trimmed(law, blank.share[q]);
+    CornerLaw here = trimmed(laws[blank.ply_of_quad(static_cast<int>(q))], blank.share[q]);
     here.rate_consistency *= system.rate_factor(step, q);
     for (std::size_t k = 0; k < 4; ++k) {
       const Corner& c = corners[k];
@@ -106,6 +106,42 @@ void add_drive(const System& system, const State& start, const State& end, int k
     ledger.work_loaded -= tool.force * (u1 - u0);
     ledger.work_dead -= tool.weight * (u1 - u0);
   }
+}
+
+// What is stored between plies follows from positions alone: from where they meet at the start, and where
+// they meet at the end. Forces of the step know the first only; the difference stands with the numerical
+// dissipation.
+void account_plies(const System& system, const StepData& step, const State& end, StepLedger& ledger) {
+  if (step.pairs.empty()) return;
+  const Scene& scene = system.scene();
+  const State& start = *step.start;
+  const FrictionSettings settings = system.friction_settings();
+  const int row = static_cast<int>(scene.tools.size());
+  Increment held;
+  double rubbed = 0.0, met = 0.0;
+  for (std::size_t k = 0; k < step.pairs.size(); ++k) {
+    const PlyPair& pair = step.pairs[k];
+    if (pair.quad < 0) continue;
+    const NormalContact c0 = system.contact_of_plies(pair, start.x), c = system.contact_of_plies(pair, end.x);
+    held.stored += pair.area * (c.energy - c0.energy);
+    held.work -= pair.area * c.pressure * (gap(pair, end.x) - gap(pair, start.x));
+    met -= pair.area * c.energy;
+    if (!system.rubs(step, row) || step.friction[row][k].load == 0.0) continue;
+    const FrictionPoint& point = step.friction[row][k];
+    const Vector3d v = system.velocity_in_row(step, end.x, row, static_cast<int>(k));
+    const double work = friction_force(settings, point, v).dot(v) * step.dt;
+    rubbed += work;
+    friction::Context context = point.context;
+    context.slip_speed = slip_velocity(point, v).norm();
+    if (!scene.friction->box.contains(context, law_at(settings, point, context.slip_speed).hersey))
+      ledger.friction_outside += work;
+  }
+  for (const PlyPair& pair : system.pairs_at(end.x))
+    met += pair.area * system.contact_of_plies(pair, end.x).energy;
+  ledger.friction.push_back(rubbed);
+  ledger.compaction_plies = held.stored + met;
+  ledger.pairing = -met;
+  ledger.numerical += held.work - ledger.compaction_plies;
 }
 
 }  // namespace
@@ -196,6 +232,7 @@ StepAccount account(const System& system, const StepData& step, const State& end
   }
   ledger.compaction = compaction.stored;
   ledger.numerical += compaction.work - compaction.stored;
+  account_plies(system, step, end, ledger);
 
   if (scene.stabilisation > 0.0)
     for (int i = 0; i < blank.nodes(); ++i) {

@@ -19,14 +19,18 @@ struct StepLedger {
   double press = 0.0;        ///< change of the energy in springs of tools
   double tow = 0.0, shear = 0.0, bending = 0.0, twist = 0.0, compaction = 0.0;  ///< change of stored energy
   double kinetic = 0.0;                                                         ///< change of kinetic energy
-  std::vector<double> friction;                                                 ///< dissipated at each tool
+  double compaction_plies = 0.0;  ///< change of what is stored between plies
+  std::vector<double> friction;   ///< dissipated at each tool, and behind them between plies
   double shear_rate = 0.0;        ///< dissipated by rate-dependent shear: force times increment
-  double shear_hysteresis = 0.0;  ///< dissipated between tows that turn at their crossovers
   double artefact = 0.0;          ///< dissipated by the stabilisation switch
   double numerical = 0.0;  ///< of backward Euler: 1/2 |dv|^2_M and the second-order part of each stored term
+  double pairing =
+      0.0;  ///< part of `numerical`: plies meet elsewhere at the end than where they were held to
   double friction_outside = 0.0;  ///< share of friction done outside the calibrated box [J]
 
-  double stored() const { return tow + shear + bending + twist + compaction + kinetic + press; }
+  double stored() const {
+    return tow + shear + bending + twist + compaction + compaction_plies + kinetic + press;
+  }
   double dissipated() const;
   double work() const { return work_driven + work_loaded + work_held + work_dead; }
   double residual() const { return work() - stored() - dissipated(); }

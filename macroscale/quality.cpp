@@ -6,6 +6,7 @@
 #include <numbers>
 
 #include "macroscale/outline_cut.h"
+#include "macroscale/stack.h"
 
 namespace heddle::macroscale {
 
@@ -15,7 +16,7 @@ std::vector<std::array<double, 2>> nodal_tow_strain(const Blank& blank, const St
   for (const TowSegment& segment : blank.segments) {
     const auto direction = static_cast<std::size_t>(segment.direction);
     const double length = (state.node(segment.to) - state.node(segment.from)).norm();
-    const double e = length / blank.spacing[direction] - 1.0;
+    const double e = length / blank.ply(blank.ply_of_node(segment.from)).spacing[direction] - 1.0;
     for (int n : {segment.from, segment.to}) {
       strain[n][direction] += e;
       ++count[n][direction];
@@ -49,8 +50,9 @@ double draw_in_at(const Blank& blank, const State& state, const MaterialPoint& p
 
 std::vector<double> draw_in(const Blank& blank, const State& state) {
   std::vector<double> inward;
-  for (const EdgePoint& edge : blank.edge)
-    inward.push_back(draw_in_at(blank, state, edge.point, edge.inward));
+  for (int k = 0; k < blank.plies(); ++k)
+    for (const EdgePoint& edge : blank.ply(k).edge)
+      inward.push_back(draw_in_at(blank, state, edge.point, edge.inward));
   return inward;
 }
 
@@ -59,6 +61,7 @@ std::vector<double> draw_in(const Blank& blank, const State& state) {
 bool has_square_symmetry(const Blank& blank) {
   constexpr double alike = 1e-9;  // of a cell: shares and centres agree to rounding
   const int n = blank.nu;
+  if (blank.plies() > 1) return false;  // of single plies; turned ones have only some of these
   if (blank.nv != n || std::abs(blank.spacing[0] / blank.spacing[1] - 1.0) > alike) return false;
   if (std::hypot(blank.centre[0], blank.centre[1]) > alike * blank.spacing[0]) return false;
   const auto share = [&](int i, int j) { return blank.quad(i, j) < 0 ? 0.0 : blank.share[blank.quad(i, j)]; };
@@ -179,11 +182,18 @@ BlankState blank_state(const System& system, const State& state, const StepData*
   s.quads = blank.quads;
   s.pieces = blank.pieces;
   s.outline = blank.outline;
-  for (const EdgePoint& edge : blank.edge) {
-    const Vector3d x = position_of(blank, state, edge.point);
-    s.edge.push_back({{edge.reference.x(), edge.reference.y()},
-                      {x.x(), x.y(), x.z()},
-                      draw_in_at(blank, state, edge.point, edge.inward)});
+  for (int k = 0; k < blank.plies(); ++k) {
+    const Ply& ply = blank.ply(k);
+    const int first_edge = static_cast<int>(s.edge.size());
+    for (const EdgePoint& edge : ply.edge) {
+      const Vector3d x = position_of(blank, state, edge.point);
+      s.edge.push_back({{edge.reference.x(), edge.reference.y()},
+                        {x.x(), x.y(), x.z()},
+                        draw_in_at(blank, state, edge.point, edge.inward)});
+    }
+    if (blank.plies() > 1)
+      s.plies.push_back({ply.nu, ply.nv, ply.first_node, ply.end_node, ply.first_quad, ply.end_quad,
+                         first_edge, static_cast<int>(s.edge.size())});
   }
   s.time = state.time;
   s.tow_strain = nodal_tow_strain(blank, state);
@@ -197,6 +207,7 @@ BlankState blank_state(const System& system, const State& state, const StepData*
   for (auto* field : {&s.pressure, &s.slip_speed, &s.friction_coefficient, &s.hersey})
     field->assign(blank.nodes(), 0.0);
   if (step && scene.friction && !step->frictionless) add_contact_fields(system, state, *step, s);
+  if (blank.plies() > 1) add_ply_fields(system, state, step, s);
   s.heat = heat_fields(scene, state.heat);
   for (std::size_t k = 0; k < scene.tools.size(); ++k) {
     if (scene.tools[k].role == Role::punch) s.punch_displacement = -state.tool_z[k];
@@ -215,7 +226,8 @@ double ledger_residual(const HistoryRow& r) {
   const double stored = r.energy_tow + r.energy_shear + r.energy_bending + r.energy_twist +
                         r.energy_compaction + r.energy_kinetic + r.energy_press;
   const double dissipated = r.friction_punch + r.friction_die + r.friction_binder + r.dissipation_shear_rate +
-                            r.dissipation_shear_hysteresis + r.dissipation_artefact + r.dissipation_numerical;
+                            r.dissipation_shear_hysteresis + r.dissipation_artefact +
+                            r.dissipation_numerical + r.friction_plies;
   return work - stored - dissipated;
 }
 
@@ -299,7 +311,7 @@ void summarise(StampingResult& result, const Blank& blank, const State& state, d
   }
   if (largest_force > 0.0) s.force_balance_residual_max = peak_force_balance / largest_force;
   if (last.work_punch > 0.0) s.numerical_dissipation_share = last.dissipation_numerical / last.work_punch;
-  const double rubbed = last.friction_punch + last.friction_die + last.friction_binder;
+  const double rubbed = last.friction_punch + last.friction_die + last.friction_binder + last.friction_plies;
   s.friction_work_outside = rubbed > 0.0 ? last.friction_work_outside / rubbed : 0.0;
   s.symmetry_gap_shear = s.symmetry_gap_draw_in = -1.0;
   if (has_square_symmetry(blank)) {

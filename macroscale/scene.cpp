@@ -15,6 +15,7 @@ State initial_state(const Scene& scene) {
   if (scene.shear_friction.on()) state.shear_memory.resize(state.corner_angle.size());
   state.memory.assign(scene.tools.size(),
                       std::vector<friction::ContactState>(contact_count(scene.blank, scene.contact_sites)));
+  if (scene.blank.plies() > 1) state.memory.emplace_back(ply_points(scene.blank).size());
   state.heat = initial_heat(scene);
   return state;
 }

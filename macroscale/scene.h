@@ -9,6 +9,7 @@
 #include "friction/model.h"
 #include "macroscale/blank.h"
 #include "macroscale/contact.h"
+#include "macroscale/ply_contact.h"
 #include "macroscale/shear_friction.h"
 #include "macroscale/stamping.h"
 #include "macroscale/thermal/blank_heat.h"
@@ -22,6 +23,8 @@ struct Scene {
   Blank blank;
   const mesoscale::FabricProperties* fabric = nullptr;
   const friction::Model* friction = nullptr;  ///< null = frictionless
+  bool plies_rub = true;                      ///< whether the same law acts between plies
+  double nesting = 0.0;  ///< how much nearer than a thickness two plies lie unpressed [m]
   std::vector<Tool> tools;
 
   std::vector<char> held;    ///< per unknown 3 i + c: 1 = its position is prescribed; empty = all free
@@ -44,6 +47,8 @@ struct Scene {
     for (const Tool& tool : tools) n += has_unknown(tool);
     return n;
   }
+  /// Distance of the middles of two plies that do not press each other [m].
+  double ply_rest() const { return fabric->thickness - nesting; }
   int unknowns() const { return 3 * blank.nodes() + loaded_tools(); }
 };
 
@@ -53,10 +58,12 @@ struct State {
   Eigen::VectorXd x;           ///< positions [m]
   Eigen::VectorXd v;           ///< velocities [m/s]
   std::vector<double> tool_z;  ///< displacement of each tool along z; of a sprung tool that of its drive [m]
-  std::vector<double> corner_angle;                         ///< gamma of each corner, 4 a quad [rad]
+  std::vector<double> corner_angle;       ///< gamma of each corner, 4 a quad [rad]
   std::vector<ShearMemory> shear_memory;  ///< of each corner; empty: no friction between tows
-  std::vector<std::vector<friction::ContactState>> memory;  ///< per tool, per contact point
-  BlankHeat heat;                                           ///< empty: one temperature a run
+  /// Per tool, per contact point; behind the tools, in a blank of several plies, per ply point.
+  std::vector<std::vector<friction::ContactState>> memory;
+  PlyCoupling coupling;  ///< pattern of the matrix between plies, which a run that is resumed must share
+  BlankHeat heat;        ///< empty: one temperature a run
 
   Eigen::Vector3d node(int i) const { return x.segment<3>(3 * i); }
 };

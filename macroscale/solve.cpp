@@ -83,6 +83,7 @@ void place(const System& system, const StepData& step, const VectorXd& x, State&
     end.shear_memory[k] = sheared_to(scene.shear_friction, scene.fabric->shear_stress, start.shear_memory[k],
                                      std::sin(end.corner_angle[k]));
   end.memory = start.memory;
+  end.coupling = system.coupling();
   end.heat = start.heat;
 }
 
@@ -91,19 +92,19 @@ void accept(const System& system, const StepData& step, const VectorXd& x, State
   const Scene& scene = system.scene();
   if (step.frictionless || !scene.friction) return;
   const FrictionSettings settings = system.friction_settings();
-  for (int k = 0; k < static_cast<int>(scene.tools.size()); ++k)
-    for (int i = 0; i < system.contacts(); ++i) {
+  for (int k = 0; k < system.friction_rows(); ++k)
+    for (int i = 0; i < system.points_in_row(k); ++i) {
       const FrictionPoint& point = step.friction[k][i];
       friction::ContactState& memory = end.memory[k][i];
       if (point.load == 0.0) continue;
-      const double speed = slip_velocity(point, system.relative_velocity(step, x, k, i)).norm();
+      const double speed = slip_velocity(point, system.velocity_in_row(step, x, k, i)).norm();
       const auto law = law_at(settings, point, speed);
       memory = law.state;
       memory.slip += speed * step.dt;
       memory.dwell += step.dt;
-      const Vector3d v = system.relative_velocity(step, x, k, i);
+      const Vector3d v = system.velocity_in_row(step, x, k, i);
       memory.work_per_area +=
-          friction_force(settings, point, v).dot(v) * step.dt / system.contact_area(step, i);
+          friction_force(settings, point, v).dot(v) * step.dt / system.area_in_row(step, k, i);
     }
 }
 
@@ -138,6 +139,12 @@ Fault fault_of(const System& system, const StepData& step, const State& end) {
                             name_of_contact(system, i), 1e3 * approach, name_of(scene.tools[k].role)),
                 FailureKind::pressed_through};
     }
+  for (std::size_t k = 0; k < step.pairs.size(); ++k)
+    if (const double approach = system.contact_of_plies(step.pairs[k], end.x).approach;
+        approach > 0.5 * scene.fabric->thickness)
+      return {fmt::format("cell {} is pressed {:.3f} mm into the next ply, through its middle",
+                          system.ply_points()[k].quad, 1e3 * approach),
+              FailureKind::pressed_through};
   return {};
 }
 
@@ -178,6 +185,7 @@ StepSummary advance(System& system, const State& state, double dt, const std::ve
   const std::vector<double> shear_angle =
       contact_shear_angle(scene.blank, scene.contact_sites, state.corner_angle);
   if (scene.compaction_follows_shear) step.contact_shear = shear_angle;
+  system.pair(step);
   StepData old_place = step;
   old_place.tool_z = state.tool_z;
   step.friction = freeze(system, old_place, state.x, shear_angle);

@@ -15,6 +15,7 @@
 #include "macroscale/release.h"
 #include "macroscale/scene.h"
 #include "macroscale/solve.h"
+#include "macroscale/stack.h"
 #include "macroscale/stamping_scene.h"
 #include "macroscale/system.h"
 
@@ -40,9 +41,16 @@ double smoothing_of_dwell(const ProcessSpec& process, double of_stroke) {
 enum class Ending { done, failed, stopped };
 
 std::vector<std::pair<std::string, double>> terms_of(const PotentialTerms& p) {
-  return {{"inertia", p.inertia},       {"tow", p.tow},         {"shear", p.shear},
-          {"shear_rate", p.rate},       {"bending", p.bending}, {"twist", p.twist},
-          {"compaction", p.compaction}, {"loads", p.loads},     {"stabilisation", p.stabilisation}};
+  return {{"inertia", p.inertia},
+          {"tow", p.tow},
+          {"shear", p.shear},
+          {"shear_rate", p.rate},
+          {"bending", p.bending},
+          {"twist", p.twist},
+          {"compaction", p.compaction},
+          {"loads", p.loads},
+          {"stabilisation", p.stabilisation},
+          {"compaction_plies", p.compaction_plies}};
 }
 
 // Residuals and energies of the last iterate, sorted by what is a number and what is not.
@@ -95,6 +103,7 @@ void take_over(StampingResult& result, const StampingSpec& spec, const Blank& bl
   s.pressure_max = at.peak_pressure;
   s.crush_share = at.peak_pressure / last_table_pressure;
   s.friction_swing = at.peak_swing;
+  if (blank.plies() > 1) s.stack = stack_summary(blank, at);
   result.history = std::move(at.history);
   result.hold = std::move(at.hold);
   s.release = std::move(at.release);
@@ -110,7 +119,7 @@ void refuse(const std::string& fault) {
 // A run that was complete: no tools, no laws, no equations.
 StampingResult result_of(const StampingSpec& spec, const mesoscale::FabricProperties& fabric,
                          const StampingCheckpoint& last) {
-  const Blank blank = make_blank(outline_of(spec.blank), spec.blank.spacing, spec.blank.orientation);
+  const Blank blank = stamping_blank(spec, fabric);
   refuse(fault_of(last, blank, spec.contact_sites, all_steps(spec.process), state_sizes(spec)));
   StampingResult result;
   result.summary.completed = true;
@@ -157,8 +166,10 @@ class Run {
   Ending drive() {
     const Ending begun = control_.resume_from ? resume(*control_.resume_from) : begin();
     if (begun != Ending::done) return begun;
-    const int parts = parts_of_step(spec_, scene_.fabric->thickness,
-                                    std::max(scene_.blank.spacing[0], scene_.blank.spacing[1]));
+    double spacing = 0.0;
+    for (int k = 0; k < scene_.blank.plies(); ++k)
+      for (const double along : scene_.blank.ply(k).spacing) spacing = std::max(spacing, along);
+    const int parts = parts_of_step(spec_, scene_.fabric->thickness, spacing);
     while (now_.step < all_steps(spec_.process)) {
       const Ending ending = advance_to(now_.step + 1, parts);
       if (ending != Ending::done) return ending;
@@ -292,7 +303,9 @@ class Run {
     State end;
     std::vector<double> tool_z = now_.state.tool_z;
     tool_z[punch] = -stroke_at_time(spec_.process, time);
+    const int patterns = system_.patterns();
     const StepSummary summary = advance(system_, now_.state, dt, tool_z, {}, options_, end, attempt_);
+    now_.patterns += system_.patterns() - patterns;
     now_.newton_iterations += summary.newton_iterations;
     now_.factorisations += summary.factorisations;
     now_.row.newton_iterations += summary.newton_iterations;
@@ -303,7 +316,9 @@ class Run {
       kind_ = summary.kind;
       return Ending::failed;
     }
-    add_to_history(now_.row, account(system_, attempt_, end), scene_);
+    const StepAccount books = account(system_, attempt_, end);
+    add_to_history(now_.row, books, scene_);
+    now_.pairing += std::abs(books.ledger.pairing);
     now_.peak_pressure = std::max(now_.peak_pressure, largest_pressure(system_, attempt_, end));
     if (summary.swings) now_.peak_swing = std::max(now_.peak_swing, summary.lag_residual);
     now_.falling_branch |= on_falling_branch(system_, attempt_, end);

@@ -38,7 +38,15 @@ struct BlankSpec {
   double orientation = 0.0;                ///< warp against x [rad]
   double spacing = 4.5e-3;                 ///< upper bound of the node spacing [m]
   int plies = 1;
+  std::vector<double>
+      layup;             ///< warp of each ply against `orientation`, bottom first; empty: all alike [rad]
+  double nesting = 0.0;  ///< how much nearer than a thickness two plies lie unpressed [m]
 };
+
+/// All plies on one another before anything presses them [m].
+inline double stack_thickness(const BlankSpec& blank, double ply_thickness) {
+  return blank.plies * ply_thickness - (blank.plies - 1) * blank.nesting;
+}
 
 /// The blank's edge about the punch axis, whatever its shape. Circles are polygons within 2e-5 of the radius.
 Outline outline_of(const BlankSpec& blank);
@@ -144,6 +152,7 @@ struct HistoryRow {
   double energy_kinetic = 0.0;
   double energy_press = 0.0;  ///< in the frame of the press and the springs of the binder
   double friction_punch = 0.0, friction_die = 0.0, friction_binder = 0.0;
+  double friction_plies = 0.0;                ///< between plies
   double dissipation_shear_hysteresis = 0.0;  ///< friction between tows
   double dissipation_shear_rate = 0.0, dissipation_artefact = 0.0, dissipation_numerical = 0.0;
   double ledger_residual = 0.0;        ///< what the columns above leave over [J]
@@ -160,10 +169,18 @@ struct EdgeState {
   double draw_in = 0.0;             ///< along the inward normal of the flat edge [m]
 };
 
+/// What belongs to one ply of several in the lists of a BlankState: [first, end) of each.
+struct PlyRange {
+  int nu = 0, nv = 0;  ///< cells of its grid
+  int first_node = 0, end_node = 0, first_quad = 0, end_quad = 0, first_edge = 0, end_edge = 0;
+};
+
 /// The blank at one instant, for pictures and files. Nodes ascend by grid lines (i, j), i along warp; a whole
-/// rectangle holds all of them, index = i * (nv + 1) + j.
+/// rectangle holds all of them, index = i * (nv + 1) + j. Several plies stand one after the other, bottom
+/// first.
 struct BlankState {
   int nu = 0, nv = 0;                             ///< cells of the grid along warp and weft, before trimming
+  std::vector<PlyRange> plies;                    ///< empty: one ply
   std::vector<std::array<int, 2>> grid;           ///< (i, j) of each node
   std::vector<std::array<double, 2>> reference;   ///< [m]
   std::vector<std::array<double, 3>> position;    ///< [m]
@@ -175,8 +192,11 @@ struct BlankState {
   std::vector<double> shear_angle;                ///< per node, signed [rad]
   std::vector<std::array<double, 2>> tow_strain;  ///< per node {warp, weft} [-]
   std::vector<double> pressure, slip_speed, friction_coefficient,
-      hersey;       ///< per node, of the face that presses most
-  HeatFields heat;  ///< empty: one temperature a run
+      hersey;  ///< per node, of the face that presses most on a tool
+  std::vector<double> ply_slip,
+      ply_pressure;  ///< at each node the largest of the cells about it against other plies: way
+                     ///< slipped [m], pressure [Pa]; empty: one ply
+  HeatFields heat;   ///< empty: one temperature a run
   double time = 0.0, punch_displacement = 0.0, binder_position = 0.0;
 };
 
@@ -194,6 +214,28 @@ struct HeatSummary {
 struct Release {
   HistoryRow row;      ///< the ledger goes on; work_punch and work_binder take back what the tools gave up
   double moved = 0.0;  ///< largest way of a node [m]
+};
+
+/// One ply of several.
+struct PlySummary {
+  double orientation = 0.0;      ///< of its warp against x [rad]
+  double shear_angle_max = 0.0;  ///< at the end [rad]
+  double draw_in_max = 0.0;      ///< at the end [m]
+};
+
+/// Two neighbouring plies, the lower one named by its place from the bottom.
+struct InterfaceSummary {
+  double slip_max = 0.0;   ///< way that a point of contact slipped while pressed [m]
+  double slip_mean = 0.0;  ///< by area [m]
+};
+
+/// A blank of several plies.
+struct StackSummary {
+  std::vector<PlySummary> plies;             ///< bottom first
+  std::vector<InterfaceSummary> interfaces;  ///< one fewer
+  int patterns = 0;            ///< of the matrix, made anew as plies slipped out of the one before
+  double pairing_share = 0.0;  ///< energy that the plies' meeting points, held over each step, leave out: sum
+                               ///< of sizes over the punch's work [-]
 };
 
 struct StampingSummary {
@@ -221,10 +263,11 @@ struct StampingSummary {
   int factorisations = 0;           ///< of the matrix; more than Newton iterations where it was indefinite
   std::array<double, 2> spacing{};  ///< as used [m]
   bool completed = false;
-  bool stopped = false;             ///< from outside, between two Newton iterations; no failure
-  std::string failure;              ///< why it stopped, when not completed
-  std::optional<HeatSummary> heat;  ///< of a run with temperatures
-  std::optional<Release> release;
+  bool stopped = false;               ///< from outside, between two Newton iterations; no failure
+  std::string failure;                ///< why it stopped, when not completed
+  std::optional<HeatSummary> heat;    ///< of a run with temperatures
+  std::optional<StackSummary> stack;  ///< of several plies
+  std::optional<Release> release;     ///< where the press releases the blank
 };
 
 /// What ended a step, by the cure it asks for (macroscale/advice.h).

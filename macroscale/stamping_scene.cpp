@@ -60,22 +60,42 @@ std::vector<Tool> binders_of(const StampingSpec& spec, const Shape& whole, doubl
   return tools;
 }
 
-// How far above the blank's middle the binder's face stands once it has closed on the flat blank; the die's
-// stands as far below.
-double closed_half(const StampingSpec& spec, const mesoscale::FabricProperties& fabric, double weight) {
-  if (spec.binder.control == BinderControl::gap) return 0.5 * spec.binder.gap;
+// How far the closed binder presses each face of each ply: the stack fills the gap, or carries the force [m].
+double closed_approach(const StampingSpec& spec, const mesoscale::FabricProperties& fabric, double weight) {
+  if (spec.binder.control == BinderControl::gap)
+    return (stack_thickness(spec.blank, fabric.thickness) - spec.binder.gap) / (2.0 * spec.blank.plies);
   const double pressure = (spec.process.binder_force + weight) / binder_area(spec);
-  return 0.5 * fabric.thickness - approach_at(fabric.compaction.curves().front(), pressure);
+  return approach_at(fabric.compaction.curves().front(), pressure);
+}
+
+double binder_weight(const StampingSpec& spec) {
+  return spec.process.press.gravity ? standard_gravity * spec.binder.mass : 0.0;
 }
 
 }  // namespace
 
-// Die and binder stand where they have closed on a flat blank, so that its midplane is at z = 0 and the punch
-// touches it at t = 0 whatever the binder force.
+Blank stamping_blank(const StampingSpec& spec, const mesoscale::FabricProperties& fabric) {
+  const BlankSpec& blank = spec.blank;
+  if (blank.plies == 1) return make_blank(outline_of(blank), blank.spacing, blank.orientation);
+  const double apart =
+      fabric.thickness - blank.nesting - 2.0 * closed_approach(spec, fabric, binder_weight(spec));
+  std::vector<Blank> plies;
+  for (int k = 0; k < blank.plies; ++k) {
+    const double turned = blank.layup.empty() ? 0.0 : blank.layup[static_cast<std::size_t>(k)];
+    plies.push_back(make_blank(outline_of(blank), blank.spacing, blank.orientation + turned,
+                               (k - 0.5 * (blank.plies - 1)) * apart));
+  }
+  return stacked(std::move(plies));
+}
+
+// Die and binder stand where they have closed on a flat blank, so that its middle is at z = 0 and the punch
+// touches it at t = 0 whatever the binder force. In the opening nothing presses the plies: there the stack
+// rises to its rest.
 Scene stamping_scene(const StampingSpec& spec, const mesoscale::FabricProperties& fabric,
                      const friction::Model& friction) {
   Scene scene;
-  scene.blank = make_blank(outline_of(spec.blank), spec.blank.spacing, spec.blank.orientation);
+  scene.blank = stamping_blank(spec, fabric);
+  scene.nesting = spec.blank.nesting;
   scene.fabric = &fabric;
   scene.friction = &friction;
   const PressSpec& press = spec.process.press;
@@ -91,28 +111,39 @@ Scene stamping_scene(const StampingSpec& spec, const mesoscale::FabricProperties
   for (Tool& binder : binders_of(spec, tools.binder, closed, weight))
     scene.tools.push_back(std::move(binder));
   if (press.gravity) scene.load = weight_of_fabric(scene);
-  scene.blank_temperature = spec.process.blank_temperature;
-  scene.tool_temperature = spec.process.tool_temperature;
-  // Smoothing follows the punch speed, so a rate-free law stays rate-free; creep while sticking is below
-  // 2e-4 of the stroke.
-  scene.slip_smoothing = std::max(2e-4 * mean_speed(spec.process), 1e-6);
-  scene.mass_scaling = spec.artefact.mass_scaling;
-  scene.stabilisation = spec.artefact.stabilisation;
-  scene.shear_rate = spec.shear_rate;
-  scene.shear_friction = spec.shear_friction;
-  scene.contact_pressure = spec.contact_pressure;
-  scene.contact_sites = spec.contact_sites;
-  scene.compaction_follows_shear = spec.compaction_follows_shear;
-  if (spec.thermal) scene.heat = heat_model(*spec.thermal, fabric.areal_density, scene.blank_temperature);
-  return scene;
-}
+  // How far the closed binder presses each face of each ply: the stack fills the gap, or carries the force
+  // [m].
+  double closed_approach(const StampingSpec& spec, const mesoscale::FabricProperties& fabric, double weight) {
+    if (spec.binder.control == BinderControl::gap)
+      return (stack_thickness(spec.blank, fabric.thickness) - spec.binder.gap) / (2.0 * spec.blank.plies);
+    const double pressure = (spec.process.binder_force + weight) / binder_area(spec);
+    return approach_at(fabric.compaction.curves().front(), pressure);
+  }
 
-StateSizes state_sizes(const StampingSpec& spec) {
-  const PressSpec& press = spec.process.press;
-  const bool sprung = press.compliance > 0.0 || press.force_limit > 0.0;
-  const bool loaded = spec.binder.control == BinderControl::force;
-  const int dies = spec.die.bottom == DieBottom::flat ? 2 : 1;
-  return {1 + dies + spec.binder.sectors, (sprung ? 1 : 0) + (loaded ? spec.binder.sectors : 0)};
-}
+  double binder_weight(const StampingSpec& spec) {
+    return spec.process.press.gravity ? standard_gravity * spec.binder.mass : 0.0;
+    scene.blank_temperature = spec.process.blank_temperature;
+    scene.tool_temperature = spec.process.tool_temperature;
+    // Smoothing follows the punch speed, so a rate-free law stays rate-free; creep while sticking is below
+    // 2e-4 of the stroke.
+    scene.slip_smoothing = std::max(2e-4 * mean_speed(spec.process), 1e-6);
+    scene.mass_scaling = spec.artefact.mass_scaling;
+    scene.stabilisation = spec.artefact.stabilisation;
+    scene.shear_rate = spec.shear_rate;
+    scene.shear_friction = spec.shear_friction;
+    scene.contact_pressure = spec.contact_pressure;
+    scene.contact_sites = spec.contact_sites;
+    scene.compaction_follows_shear = spec.compaction_follows_shear;
+    if (spec.thermal) scene.heat = heat_model(*spec.thermal, fabric.areal_density, scene.blank_temperature);
+    return scene;
+  }
+
+  StateSizes state_sizes(const StampingSpec& spec) {
+    const PressSpec& press = spec.process.press;
+    const bool sprung = press.compliance > 0.0 || press.force_limit > 0.0;
+    const bool loaded = spec.binder.control == BinderControl::force;
+    const int dies = spec.die.bottom == DieBottom::flat ? 2 : 1;
+    return {1 + dies + spec.binder.sectors, (sprung ? 1 : 0) + (loaded ? spec.binder.sectors : 0)};
+  }
 
 }  // namespace heddle::macroscale

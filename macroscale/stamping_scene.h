@@ -8,6 +8,10 @@
 
 namespace heddle::macroscale {
 
+/// The plies on one another where the closed binder leaves them: their middles a thickness apart less what
+/// nesting and the binder's pressure take, that of the stack at z = 0.
+Blank stamping_blank(const StampingSpec& spec, const mesoscale::FabricProperties& fabric);
+
 /// Blank, tools and laws of a stamping. The punch is the first tool; die and binder may be several each.
 /// Fabric and friction must outlive the scene.
 Scene stamping_scene(const StampingSpec& spec, const mesoscale::FabricProperties& fabric,

@@ -58,7 +58,8 @@ Vector3d twist_of(const VectorXd& x, const std::array<int, 4>& q) {
 System::System(const Scene& scene)
     : scene_(scene),
       size_(scene.unknowns()),
-      points_(macroscale::contact_points(scene.blank, scene.contact_sites)) {
+      points_(macroscale::contact_points(scene.blank, scene.contact_sites)),
+      ply_points_(macroscale::ply_points(scene.blank)) {
   compaction_ = scene.fabric->compaction.curves().front();
   mass_.assign(size_, 0.0);
   const double density = scene.fabric->areal_density * scene.mass_scaling;
@@ -74,15 +75,16 @@ System::System(const Scene& scene)
 }
 
 double System::bending_stiffness(const TowTriple& t) const {
-  const double h = scene_.blank.spacing[t.direction];
+  const Blank& blank = scene_.blank;
+  const double h = blank.ply(blank.ply_of_node(t.middle)).spacing[t.direction];
   return scene_.fabric->bending[t.direction](scene_.blank_temperature) * t.width / (h * h * h);
 }
 
 double System::twist_stiffness(int quad) const {
   const double mean = 0.5 * (scene_.fabric->bending[0](scene_.blank_temperature) +
                              scene_.fabric->bending[1](scene_.blank_temperature));
-  return scene_.blank.share[quad] *
-         (twist_share * mean / (scene_.blank.spacing[0] * scene_.blank.spacing[1]));
+  const auto& spacing = scene_.blank.ply(scene_.blank.ply_of_quad(quad)).spacing;
+  return scene_.blank.share[quad] * (twist_share * mean / (spacing[0] * spacing[1]));
 }
 
 double System::tool_position(const StepData& step, const VectorXd& x, int k) const {
@@ -124,12 +126,13 @@ Vector3d System::relative_velocity(const StepData& step, const VectorXd& x, int 
          step.dt;
 }
 
-CornerLaw System::corner_law(const StepData& step) const {
+CornerLaw System::corner_law(const StepData& step, int ply) const {
   CornerLaw law;
+  const Ply& grid = scene_.blank.ply(ply);
   law.fabric = scene_.fabric;
-  law.area = scene_.blank.corner_area();
-  law.length_warp = scene_.blank.spacing[0];
-  law.length_weft = scene_.blank.spacing[1];
+  law.area = grid.corner_area();
+  law.length_warp = grid.spacing[0];
+  law.length_weft = grid.spacing[1];
   if (scene_.shear_rate > 0.0)
     law.rate_consistency =
         scene_.shear_rate * scene_.fabric->shear_rate.consistency_at(scene_.blank_temperature);
@@ -139,14 +142,20 @@ CornerLaw System::corner_law(const StepData& step) const {
   return law;
 }
 
+std::vector<CornerLaw> System::corner_laws(const StepData& step) const {
+  std::vector<CornerLaw> laws;
+  for (int k = 0; k < scene_.blank.plies(); ++k) laws.push_back(corner_law(step, k));
+  return laws;
+}
+
 void System::evaluate(const StepData& step, const VectorXd& x, Position& at) const {
   const Blank& blank = scene_.blank;
   at.x = x;
   at.corners.resize(4 * blank.quads.size());
-  const CornerLaw law = corner_law(step);
+  const std::vector<CornerLaw> laws = corner_laws(step);
   for_each(static_cast<int>(blank.quads.size()), [&](int q) {
     const auto corners = corners_of(blank.quads[q]);
-    CornerLaw here = law;
+    CornerLaw here = laws[blank.ply_of_quad(q)];
     here.rate_consistency *= rate_factor(step, q);
     for (int k = 0; k < 4; ++k) {
       const Corner& c = corners[k];
@@ -161,7 +170,7 @@ void System::evaluate(const StepData& step, const VectorXd& x, Position& at) con
   const bool rubs = scene_.friction && !step.frictionless;
   const FrictionSettings settings = friction_settings();
   at.contacts.resize(tools);
-  at.friction.resize(rubs ? tools : 0);
+  at.friction.resize(rubs ? friction_rows() : 0);
   for (int k = 0; k < tools; ++k) {
     at.contacts[k].resize(contacts());
     if (rubs) at.friction[k].resize(contacts());
@@ -173,6 +182,7 @@ void System::evaluate(const StepData& step, const VectorXd& x, Position& at) con
             friction_response(settings, step.friction[k][i], relative_velocity(step, x, k, i));
     });
   }
+  evaluate_plies(step, at);
 }
 
 PotentialTerms System::potential(const StepData& step, const Position& at) const {
@@ -185,7 +195,7 @@ PotentialTerms System::potential(const StepData& step, const Position& at) const
     return 0.5 * mass_[k] * d * d / dt2;
   });
 
-  const CornerLaw law = corner_law(step);
+  const std::vector<CornerLaw> laws = corner_laws(step);
   const int quads = static_cast<int>(blank.quads.size());
   struct Sums {
     double tow = 0.0, shear = 0.0, rate = 0.0;
@@ -194,7 +204,7 @@ PotentialTerms System::potential(const StepData& step, const Position& at) const
       tbb::blocked_range<int>(0, quads, 256), Sums{},
       [&](const tbb::blocked_range<int>& range, Sums s) {
         for (int q = range.begin(); q != range.end(); ++q) {
-          const CornerLaw here = trimmed(law, blank.share[q]);
+          const CornerLaw here = trimmed(laws[blank.ply_of_quad(q)], blank.share[q]);
           for (int k = 0; k < 4; ++k) {
             const CornerEnergy w = corner_energy(here, at.corners[4 * q + k]);
             s.tow += w.tension;
@@ -226,6 +236,8 @@ PotentialTerms System::potential(const StepData& step, const Position& at) const
         contacts(), [&](int i) { return contact_area(step, i) * at.contacts[k][i].normal.energy; });
     if (body_[k] >= 0) e.loads += drive_at(scene_.tools[k], x[body_[k]]).energy;
   }
+  e.compaction_plies = ordered_sum(static_cast<int>(step.pairs.size()),
+                                   [&](int i) { return step.pairs[i].area * at.ply_contacts[i].energy; });
   for (std::size_t k = 0; k < scene_.load.size(); ++k)
     e.loads -= scene_.load[k] * x[static_cast<Eigen::Index>(k)];
   if (scene_.stabilisation > 0.0)
@@ -240,8 +252,8 @@ double System::friction_difference(const StepData& step, const Position& from, c
   if (from.friction.empty()) return 0.0;
   const FrictionSettings settings = friction_settings();
   double sum = 0.0;
-  for (int k = 0; k < static_cast<int>(scene_.tools.size()); ++k)
-    sum += ordered_sum(contacts(), [&](int i) {
+  for (int k = 0; k < friction_rows(); ++k)
+    sum += ordered_sum(points_in_row(k), [&](int i) {
       const FrictionPoint& point = step.friction[k][i];
       if (point.load == 0.0) return 0.0;
       return friction_power_difference(settings, point, from.friction[k][i], to.friction[k][i]);
@@ -264,12 +276,12 @@ VectorXd System::full_gradient(const StepData& step, const Position& at) const {
   const double dt2 = step.dt * step.dt;
   for_each(size_, [&](int k) { g[k] = mass_[k] * (x[k] - step.target[k]) / dt2; });
 
-  const CornerLaw law = corner_law(step);
+  const std::vector<CornerLaw> laws = corner_laws(step);
   for (const auto& colour : colours_)
     for_each(static_cast<int>(colour.size()), [&](int index) {
       const int q = colour[index];
       const auto corners = corners_of(blank.quads[q]);
-      const CornerLaw here = trimmed(law, blank.share[q]);
+      const CornerLaw here = trimmed(laws[blank.ply_of_quad(q)], blank.share[q]);
       for (int k = 0; k < 4; ++k) {
         const Corner& c = corners[k];
         const CornerGradient w = corner_gradient(here, at.corners[4 * q + k]);
@@ -310,6 +322,7 @@ VectorXd System::full_gradient(const StepData& step, const Position& at) const {
       for (const Vector3d& f : force) g[body_[k]] -= f.z();
     }
   }
+  add_forces_of_plies(step, at, g);
   for (std::size_t k = 0; k < scene_.load.size(); ++k) g[static_cast<Eigen::Index>(k)] -= scene_.load[k];
   if (scene_.stabilisation > 0.0)
     for (int i = 0; i < blank.nodes(); ++i)

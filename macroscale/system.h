@@ -11,6 +11,7 @@
 #include "macroscale/contact.h"
 #include "macroscale/contact_points.h"
 #include "macroscale/corner_element.h"
+#include "macroscale/ply_contact.h"
 #include "macroscale/scene.h"
 
 namespace heddle::macroscale {
@@ -25,9 +26,11 @@ struct StepData {
   /// Trellis angle at each contact point at the start, which compaction holds over the step [rad]; empty:
   /// that of the flat fabric.
   std::vector<double> contact_shear;
-  /// Per tool, per contact point: the lagged friction point (load 0 = no friction).
+  /// Per tool, per contact point: the lagged friction point (load 0 = no friction). Behind the tools, in a
+  /// blank of several plies, per ply point.
   std::vector<std::vector<FrictionPoint>> friction;
-  Eigen::VectorXd iterate;  ///< the last position tried; the end of the step once it has converged [m]
+  std::vector<PlyPair> pairs;  ///< per ply point: what it meets at the start; empty in a single ply
+  Eigen::VectorXd iterate;     ///< the last position tried; the end of the step once it has converged [m]
 };
 
 /// One contact point against one tool.
@@ -50,6 +53,7 @@ struct Position {
   std::vector<CornerPoint> corners;                     ///< 4 a quad
   std::vector<std::vector<KeptContact>> contacts;       ///< per tool, per contact point
   std::vector<std::vector<FrictionResponse>> friction;  ///< the same; empty without friction
+  std::vector<NormalContact> ply_contacts;  ///< per ply point; their friction is behind the tools'
 };
 
 /// Two positions to work in, of hundreds of bytes a node: kept between searches, so that only the first one
@@ -62,8 +66,10 @@ struct SearchRoom {
 struct PotentialTerms {
   double inertia = 0.0, tow = 0.0, shear = 0.0, rate = 0.0, bending = 0.0, twist = 0.0, compaction = 0.0;
   double loads = 0.0, stabilisation = 0.0;
+  double compaction_plies = 0.0;  ///< between plies
   double total() const {
-    return inertia + tow + shear + rate + bending + twist + compaction + loads + stabilisation;
+    return inertia + tow + shear + rate + bending + twist + compaction + loads + stabilisation +
+           compaction_plies;
   }
 };
 
@@ -120,9 +126,28 @@ class System {
   ToolContact tool_contact(const StepData& step, const Eigen::VectorXd& x, int k, int i) const;
   /// Velocity of contact point i against tool k over the step [m/s].
   Eigen::Vector3d relative_velocity(const StepData& step, const Eigen::VectorXd& x, int k, int i) const;
-  /// Corner law of this step in a whole cell (time step and rate term included); `trimmed` gives a cut
-  /// cell's.
-  CornerLaw corner_law(const StepData& step) const;
+  /// Corner law of this step in a whole cell of a ply (time step and rate term included); `trimmed` gives a
+  /// cut cell's.
+  CornerLaw corner_law(const StepData& step, int ply = 0) const;
+  std::vector<CornerLaw> corner_laws(const StepData& step) const;  ///< of all plies
+
+  /// What may touch between plies; empty in a single ply.
+  const std::vector<PlyPoint>& ply_points() const { return ply_points_; }
+  /// Rows of friction: a tool each, and one of the ply points where there are any.
+  int friction_rows() const { return static_cast<int>(scene_.tools.size()) + !ply_points_.empty(); }
+  int points_in_row(int row) const;
+  /// Whether that row rubs in this step.
+  bool rubs(const StepData& step, int row) const;
+  /// Area [m^2] and velocity of slip [m/s] of a point of any row.
+  double area_in_row(const StepData& step, int row, int i) const;
+  Eigen::Vector3d velocity_in_row(const StepData& step, const Eigen::VectorXd& x, int row, int i) const;
+  NormalContact contact_of_plies(const PlyPair& pair, const Eigen::VectorXd& x) const;
+  std::vector<PlyPair> pairs_at(const Eigen::VectorXd& x) const;  ///< of all ply points, at positions x
+  /// Finds what the ply points meet at the start of the step, and makes a new pattern of the matrix where
+  /// they have left the one there is. `coupling` is that of the state the step starts from.
+  void pair(StepData& step);
+  const PlyCoupling& coupling() const { return coupling_; }
+  int patterns() const { return patterns_; }  ///< made because plies had moved out of the one before
   /// Factor on its rate term in one cell: 1 at the blank's temperature.
   double rate_factor(const StepData& step, std::size_t quad) const {
     return step.start->heat.empty() ? 1.0 : step.start->heat.rate_factor[quad];
@@ -146,6 +171,10 @@ class System {
   void add_contact(const StepData& step, const Position& at, Filter filter);
   void add_contact_in_cells(const StepData& step, const Position& at, Filter filter);
   void close_body_row(const StepData& step, const Position& at, int k, int body);
+  void add_contact_of_plies(const StepData& step, const Position& at, Filter filter);
+  void evaluate_plies(const StepData& step, Position& at) const;
+  void add_forces_of_plies(const StepData& step, const Position& at, Eigen::VectorXd& g) const;
+  void couple(PlyCoupling coupling);
   Eigen::Vector3d contact_force(const StepData& step, const Position& at, int k, int i) const;
   Eigen::Matrix3d contact_stiffness(const StepData& step, const Position& at, int k, int i,
                                     Filter filter) const;
@@ -165,6 +194,9 @@ class System {
   const Scene& scene_;
   int size_ = 0;
   std::vector<ContactPoint> points_;
+  std::vector<PlyPoint> ply_points_;
+  PlyCoupling coupling_;
+  int patterns_ = 0;
   Curve compaction_;          ///< of one face at gamma = 0
   std::vector<double> mass_;  ///< per unknown [kg]
   std::vector<int> body_;     ///< per tool: its unknown, or -1

@@ -33,6 +33,12 @@ int System::block(int row_node, int column_node) const {
 void System::build_pattern() {
   const Blank& blank = scene_.blank;
   const int nodes = blank.nodes();
+  block_start_.clear();
+  block_row_.clear();
+  block_place_.clear();
+  corner_slots_.clear();
+  cell_slots_.clear();
+  for (auto& colour : colours_) colour.clear();
   std::vector<std::set<int>> rows(nodes);
   const auto couple = [&](int a, int b) { rows[std::min(a, b)].insert(std::max(a, b)); };
   for (int i = 0; i < nodes; ++i) couple(i, i);
@@ -44,6 +50,9 @@ void System::build_pattern() {
     couple(t.middle, t.after);
     couple(t.before, t.after);
   }
+  for (std::size_t k = 0; k < coupling_.quad.size(); ++k)
+    for (const int near : coupled_nodes(blank, coupling_, k))
+      for (const int own : blank.quads[ply_points_[k].quad]) couple(own, near);
   block_start_.push_back(0);
   for (const auto& column : rows) {
     block_row_.insert(block_row_.end(), column.begin(), column.end());
@@ -105,12 +114,12 @@ void System::build_pattern() {
 
 // Columns of a node begin at their diagonals: the second has one value less than the first, the third two. So
 // row r of column c of a block stands r behind {0, length - 1, 2 length - 3}.
-inline std::array<double*, 3> System::columns_of(const BlockPlace& place) const {
+std::array<double*, 3> System::columns_of(const BlockPlace& place) const {
   double* first = &values_[place.first];
   return {first, first + place.column_length - 1, first + 2 * place.column_length - 3};
 }
 
-inline void System::add_block(int block, const Matrix3d& part) {
+void System::add_block(int block, const Matrix3d& part) {
   const BlockPlace& place = block_place_[block];
   const std::array<double*, 3> column = columns_of(place);
   if (!place.diagonal) {
@@ -145,11 +154,11 @@ void System::assemble_constant() {
 }
 
 void System::add_corners(const StepData& step, const Position& at, Filter filter) {
-  const CornerLaw law = corner_law(step);
+  const std::vector<CornerLaw> laws = corner_laws(step);
   for (const auto& colour : colours_)
     for_each(static_cast<int>(colour.size()), [&](int index) {
       const int q = colour[index];
-      const CornerLaw here = trimmed(law, scene_.blank.share[q]);
+      const CornerLaw here = trimmed(laws[scene_.blank.ply_of_quad(q)], scene_.blank.share[q]);
       for (int k = 0; k < 4; ++k) {
         const CornerHessian h = corner_hessian(here, at.corners[4 * q + k], filter);
         const std::array<Matrix3d, 6> part = {h.aa + h.ab + h.ab.transpose() + h.bb,
@@ -247,9 +256,11 @@ void System::begin_matrix(const StepData& step) {
     std::fill(values_.begin() + start[3 * j], values_.begin() + start[3 * j + 3], 0.0);
     const double diagonal =
         mass_[3 * j] * inverse_dt2 + scene_.stabilisation * scene_.blank.node_area[j] / step.dt;
-    for (int k = block_start_[j]; k < block_start_[j + 1]; ++k)
-      add_block(k,
-                (block_place_[k].diagonal ? constant_[k] + diagonal : constant_[k]) * Matrix3d::Identity());
+    for (int k = block_start_[j]; k < block_start_[j + 1]; ++k) {
+      const std::array<double*, 3> column = columns_of(block_place_[k]);
+      const double alike = block_place_[k].diagonal ? constant_[k] + diagonal : constant_[k];
+      for (int c = 0; c < 3; ++c) column[c][c] = alike;
+    }
   });
 }
 
@@ -274,6 +285,7 @@ void System::assemble(const StepData& step, const Position& at, Filter filter, d
   begin_matrix(step);
   add_corners(step, at, filter);
   add_contact(step, at, filter);
+  add_contact_of_plies(step, at, filter);
   finish_matrix(shift);
 }
 

@@ -92,7 +92,8 @@ Case finished(Draft draft, const std::string& file) {
 /// Reads the tools' files; a case whose tools have problems stays without them.
 Problems tool_problems(Case& a_case) {
   if (!a_case.stamping) return {};
-  const double thickness = a_case.cell->weave.fabric_thickness;
+  const double thickness =
+      macroscale::stack_thickness(a_case.stamping->blank, a_case.cell->weave.fabric_thickness);
   Problems problems;
   try {
     a_case.stamping = macroscale::with_tools_loaded(*a_case.stamping, thickness);

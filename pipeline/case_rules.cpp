@@ -154,17 +154,31 @@ Problems check_clearance(const mesoscale::CellSpec& cell, const macroscale::Stam
   constexpr double rounding = 1e-9;  // [m]: lets 71.5 mm - 70 mm hold a fabric of 1.5 mm
   if (stamping.die.file || stamping.punch.file) return {};  // measured on their surfaces
   const double clearance = stamping.die.opening_radius - stamping.punch.radius;
-  const double thickness = cell.weave.fabric_thickness;
+  const double thickness = macroscale::stack_thickness(stamping.blank, cell.weave.fabric_thickness);
   if (clearance <= 0.0 || clearance >= thickness - rounding) return {};  // <= 0: said by the room itself
   return {{"tools.die.opening_radius.fabric"_rule,
            "tools.die.opening_radius",
            "",
-           fmt::format("leaves {:.4g} mm beside the punch, less than the fabric's {:.4g} mm", 1e3 * clearance,
-                       1e3 * thickness),
+           fmt::format("leaves {:.4g} mm beside the punch, less than the {} {:.4g} mm", 1e3 * clearance,
+                       stamping.blank.plies > 1 ? "plies'" : "fabric's", 1e3 * thickness),
            fmt::format("Open the die to at least {:.6g} mm.", 1e3 * (stamping.punch.radius + thickness)),
            "",
            0,
            {"tools.punch.radius", "weave.fabric_thickness"}}};
+}
+
+/// Plies that nest by half a thickness would have their middles inside each other's faces.
+Problems check_nesting(const mesoscale::CellSpec& cell, const macroscale::BlankSpec& blank) {
+  const double most = 0.5 * cell.weave.fabric_thickness;
+  if (blank.nesting < most) return {};
+  return {{"blank.nesting.thickness"_rule,
+           "blank.nesting",
+           fmt::format("{:g} mm", 1e3 * blank.nesting),
+           fmt::format("must be less than half of the fabric's thickness ({:g} mm)", 1e3 * most),
+           "`heddle weave` with `cell.plies: 2` says how much a shift lets two plies nest.",
+           "",
+           0,
+           {"weave.fabric_thickness"}}};
 }
 
 Problems check_design(const std::filesystem::path& file) {
@@ -259,7 +273,10 @@ Problems check_between_keys(const Case& a_case, const ReadConfig& config) {
   if (const auto study = stamping_study_of(a_case.settings)) append(problems, check_stamping_study(*study));
   if (a_case.study && !any_below(config.failed, {"weave", "cell", "study"}))
     append(problems, check_study(*a_case.study, *a_case.cell));
-  if (a_case.cell && a_case.stamping) append(problems, check_clearance(*a_case.cell, *a_case.stamping));
+  if (a_case.cell && a_case.stamping) {
+    append(problems, check_clearance(*a_case.cell, *a_case.stamping));
+    append(problems, check_nesting(*a_case.cell, a_case.stamping->blank));
+  }
   append(problems, check_thermal(a_case, config));
   drop_unknowable(problems, config.failed);
   return problems;

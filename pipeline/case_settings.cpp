@@ -330,6 +330,8 @@ macroscale::StampingSpec stamping_of(const Settings& settings, const std::filesy
   take(settings, "blank.orientation", stamping.blank.orientation);
   take(settings, "blank.spacing", stamping.blank.spacing);
   take(settings, "blank.plies", stamping.blank.plies);
+  if (settings.has("blank.layup")) stamping.blank.layup = settings.many("blank.layup");
+  take(settings, "blank.nesting", stamping.blank.nesting);
   take(settings, "tools.punch.radius", stamping.punch.radius);
   take(settings, "tools.die.opening_radius", stamping.die.opening_radius);
   take(settings, "tools.die.fillet", stamping.die.fillet);

@@ -257,6 +257,16 @@ QuadMesh mesh_of(const macroscale::BlankState& blank) {
   add({"slip_speed_m_s", 1, blank.slip_speed});
   add({"friction_coefficient", 1, blank.friction_coefficient});
   add({"hersey_number", 1, blank.hersey});
+  if (!blank.plies.empty()) {
+    DataArray ply{"ply", 1, {}};
+    for (std::size_t k = 0; k < blank.plies.size(); ++k)
+      ply.values.resize(static_cast<std::size_t>(blank.plies[k].end_node), static_cast<double>(k + 1));
+    add(std::move(ply));
+    DataArray slip{"slip_between_plies_mm", 1, blank.ply_slip};
+    for (double& value : slip.values) value *= 1e3;
+    add(std::move(slip));
+    add({"pressure_between_plies_Pa", 1, blank.ply_pressure});
+  }
   const auto add_celsius = [&](const char* name, std::vector<double> kelvin) {
     for (double& value : kelvin) value -= 273.15;
     add({name, 1, std::move(kelvin)});

@@ -85,6 +85,7 @@ constexpr Column<History> history_columns[] = {
     {"friction_punch_J", [](const History& r) { return r.friction_punch; }},
     {"friction_die_J", [](const History& r) { return r.friction_die; }},
     {"friction_binder_J", [](const History& r) { return r.friction_binder; }},
+    {"friction_plies_J", [](const History& r) { return r.friction_plies; }},
     {"dissipation_shear_rate_J", [](const History& r) { return r.dissipation_shear_rate; }},
     {"dissipation_shear_hysteresis_J", [](const History& r) { return r.dissipation_shear_hysteresis; }},
     {"dissipation_artefact_J", [](const History& r) { return r.dissipation_artefact; }},

@@ -50,6 +50,21 @@ Json stack_json(const mesoscale::StackSummary& stack) {
           {"void_share", stack.shares.voids}};
 }
 
+Json plies_json(const macroscale::StackSummary& stack) {
+  Json plies = Json::array(), interfaces = Json::array();
+  for (const macroscale::PlySummary& ply : stack.plies)
+    plies.push_back({{"orientation_deg", degrees * ply.orientation},
+                     {"shear_angle_max_deg", degrees * ply.shear_angle_max},
+                     {"draw_in_max_mm", 1e3 * ply.draw_in_max}});
+  for (const macroscale::InterfaceSummary& between : stack.interfaces)
+    interfaces.push_back(
+        {{"slip_max_mm", 1e3 * between.slip_max}, {"slip_mean_mm", 1e3 * between.slip_mean}});
+  return {{"bottom_first", plies},
+          {"interfaces", interfaces},
+          {"matrix_patterns", stack.patterns},
+          {"pairing_share", stack.pairing_share}};
+}
+
 Json heat_json(const macroscale::HeatSummary& heat) {
   constexpr double zero_celsius = 273.15;  // [K]
   Json out{{"temperature_mean_C", heat.last.mean_temperature - zero_celsius},
@@ -100,6 +115,7 @@ Json stamping_json(const macroscale::StampingSummary& summary) {
   out["rejected_steps"] = summary.rejected_steps;
   out["newton_iterations"] = summary.newton_iterations;
   out["factorisations"] = summary.factorisations;
+  if (summary.stack) out["plies"] = plies_json(*summary.stack);
   if (summary.heat) out["heat"] = heat_json(*summary.heat);
   if (summary.release) out["release"] = release_json(*summary.release);
   if (!summary.failure.empty()) out["failure"] = summary.failure;

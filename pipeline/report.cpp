@@ -6,10 +6,12 @@
 #include <cmath>
 #include <numbers>
 
+#include "macroscale/ply_state.h"
 #include "pipeline/coupon_report.h"
 #include "pipeline/page.h"
 #include "pipeline/report_figures.h"
 #include "pipeline/report_heat.h"
+#include "pipeline/report_plies.h"
 #include "pipeline/report_solid.h"
 #include "pipeline/rig_figures.h"
 
@@ -59,14 +61,19 @@ std::string header(const ReportInput& input) {
 
 std::string formed_part(const ReportInput& input) {
   if (!input.blank) return "";
-  return pair(
-      figure(formed_picture(*input.blank),
-             "The formed blank, turned over so that the dome points up; white lines follow some of its tows. "
-             "Look for shear between the two tow directions, where the tows run at 45° to the edge of the "
-             "dome."),
-      figure(top_picture(*input.blank),
-             "The same from above. The dashed outline is the blank before forming: the distance to it is the "
-             "draw-in. A part that is not symmetric here has buckled or was set up so."));
+  // The lowest ply is on the outside of a part that a punch pushes down.
+  const macroscale::BlankState outer = macroscale::ply_of(*input.blank, 0);
+  return pair(figure(formed_picture(outer),
+                     "The formed blank, turned over so that the dome points up; white lines follow some of "
+                     "its tows. "
+                     "Look for shear between the two tow directions, where the tows run at 45° to the edge "
+                     "of the "
+                     "dome."),
+              figure(top_picture(outer),
+                     "The same from above. The dashed outline is the blank before forming: the distance to "
+                     "it is the "
+                     "draw-in. A part that is not symmetric here has buckled or was set up so.")) +
+         plies_section(input);
 }
 
 std::string forces(const ReportInput& input) {

@@ -123,11 +123,18 @@ Canvas ledger_chart(const Rows& history) {
   chart.x = stroke_axis;
   chart.y = {"Energy", "J"};
   chart.at = stroke(history);
-  for (const Entry& entry : entries) {
-    const bool rubs = !history.empty() && history.back().dissipation_shear_hysteresis > 0.0;
-    if (entry.value == &HistoryRow::dissipation_shear_hysteresis && !rubs) continue;  // switched off
+  const auto add = [&](const Entry& entry) {
     chart.bands.push_back({entry.name, {}, column(history, 1.0, entry.value)});
     chart.band_style.push_back(entry.style);
+  };
+  const bool plies_rub = std::any_of(history.begin(), history.end(),
+                                     [](const HistoryRow& row) { return row.friction_plies != 0.0; });
+  const bool tows_rub = !history.empty() && history.back().dissipation_shear_hysteresis > 0.0;
+  for (const Entry& entry : entries) {
+    if (entry.value == &HistoryRow::dissipation_shear_hysteresis && !tows_rub) continue;  // switched off
+    add(entry);
+    if (plies_rub && entry.value == &HistoryRow::friction_punch)
+      add({"Friction, plies", &HistoryRow::friction_plies, 7});
   }
   const auto in_press = [](const HistoryRow& row) { return row.energy_press != 0.0; };
   if (std::any_of(history.begin(), history.end(), in_press)) {

@@ -96,8 +96,8 @@ std::vector<StudiedStep> steps_in(const fs::path& file) {
                     shear = column("shear_angle_max_deg"), strain = column("tow_strain_max"),
                     draw_in = column("draw_in_max_mm"), work = column("work_punch_J"),
                     rate = column("dissipation_shear_rate_J");
-  const std::array<std::size_t, 3> friction{column("friction_punch_J"), column("friction_die_J"),
-                                            column("friction_binder_J")};
+  const std::array<std::size_t, 4> friction{column("friction_punch_J"), column("friction_die_J"),
+                                            column("friction_binder_J"), column("friction_plies_J")};
   for (const CsvRow& row : table.rows) {
     const auto value = [&](std::size_t k) { return std::stod(row.cells[k]); };
     StudiedStep step{1e-3 * value(stroke),

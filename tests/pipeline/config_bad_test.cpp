@@ -46,6 +46,8 @@ const std::vector<BadFile> bad_files{
     {"compacted_both_ways", {{"cell.state.compacted", 4}}},
     {"compacted_thinner_than_its_glass_and_resin", {{"cell.thickness.room", 4}}},
     {"compacted_until_no_void_is_left", {{"cell.pressure.room", 4}}},
+    {"plies_with_temperatures", {{"blank.plies.thermal", 8}}},
+    {"plies_without_their_angles", {{"blank.layup.plies", 7}, {"blank.nesting.thickness", 7}}},
     {"plies_with_too_few_shifts", {{"cell.shift_warp.plies", 4}}},
     {"warp_takes_too_much_crimp", {{"weave.warp_crimp.room", 3}}},
     {"hybrid_section_that_cannot_be",
