@@ -101,9 +101,12 @@ Scene stamping_scene(const StampingSpec& spec, const mesoscale::FabricProperties
   const PressSpec& press = spec.process.press;
   const double half = 0.5 * fabric.thickness;
   const TouchingTools tools = touching_tools(spec);
-  const double weight = press.gravity ? standard_gravity * spec.binder.mass : 0.0;
-  const double closed = closed_half(spec, fabric, weight);
-  scene.tools = {punch_of(press, raised(tools.punch, half)),
+  const double weight = binder_weight(spec);
+  const double approach = closed_approach(spec, fabric, weight);
+  const double outer = 0.5 * (spec.blank.plies - 1);  // from the stack's middle to that of its outer plies
+  const double closed = half - approach + outer * (scene.ply_rest() - 2.0 * approach);
+  const double at_rest = half + outer * scene.ply_rest();
+  scene.tools = {punch_of(press, raised(tools.punch, at_rest)),
                  {Role::die, raised(tools.die, -closed), Motion::fixed, 0.0, 0.0}};
   if (spec.die.bottom == DieBottom::flat)
     scene.tools.push_back(
@@ -111,39 +114,28 @@ Scene stamping_scene(const StampingSpec& spec, const mesoscale::FabricProperties
   for (Tool& binder : binders_of(spec, tools.binder, closed, weight))
     scene.tools.push_back(std::move(binder));
   if (press.gravity) scene.load = weight_of_fabric(scene);
-  // How far the closed binder presses each face of each ply: the stack fills the gap, or carries the force
-  // [m].
-  double closed_approach(const StampingSpec& spec, const mesoscale::FabricProperties& fabric, double weight) {
-    if (spec.binder.control == BinderControl::gap)
-      return (stack_thickness(spec.blank, fabric.thickness) - spec.binder.gap) / (2.0 * spec.blank.plies);
-    const double pressure = (spec.process.binder_force + weight) / binder_area(spec);
-    return approach_at(fabric.compaction.curves().front(), pressure);
-  }
+  scene.blank_temperature = spec.process.blank_temperature;
+  scene.tool_temperature = spec.process.tool_temperature;
+  // Smoothing follows the punch speed, so a rate-free law stays rate-free; creep while sticking is below
+  // 2e-4 of the stroke.
+  scene.slip_smoothing = std::max(2e-4 * mean_speed(spec.process), 1e-6);
+  scene.mass_scaling = spec.artefact.mass_scaling;
+  scene.stabilisation = spec.artefact.stabilisation;
+  scene.shear_rate = spec.shear_rate;
+  scene.shear_friction = spec.shear_friction;
+  scene.contact_pressure = spec.contact_pressure;
+  scene.contact_sites = spec.contact_sites;
+  scene.compaction_follows_shear = spec.compaction_follows_shear;
+  if (spec.thermal) scene.heat = heat_model(*spec.thermal, fabric.areal_density, scene.blank_temperature);
+  return scene;
+}
 
-  double binder_weight(const StampingSpec& spec) {
-    return spec.process.press.gravity ? standard_gravity * spec.binder.mass : 0.0;
-    scene.blank_temperature = spec.process.blank_temperature;
-    scene.tool_temperature = spec.process.tool_temperature;
-    // Smoothing follows the punch speed, so a rate-free law stays rate-free; creep while sticking is below
-    // 2e-4 of the stroke.
-    scene.slip_smoothing = std::max(2e-4 * mean_speed(spec.process), 1e-6);
-    scene.mass_scaling = spec.artefact.mass_scaling;
-    scene.stabilisation = spec.artefact.stabilisation;
-    scene.shear_rate = spec.shear_rate;
-    scene.shear_friction = spec.shear_friction;
-    scene.contact_pressure = spec.contact_pressure;
-    scene.contact_sites = spec.contact_sites;
-    scene.compaction_follows_shear = spec.compaction_follows_shear;
-    if (spec.thermal) scene.heat = heat_model(*spec.thermal, fabric.areal_density, scene.blank_temperature);
-    return scene;
-  }
-
-  StateSizes state_sizes(const StampingSpec& spec) {
-    const PressSpec& press = spec.process.press;
-    const bool sprung = press.compliance > 0.0 || press.force_limit > 0.0;
-    const bool loaded = spec.binder.control == BinderControl::force;
-    const int dies = spec.die.bottom == DieBottom::flat ? 2 : 1;
-    return {1 + dies + spec.binder.sectors, (sprung ? 1 : 0) + (loaded ? spec.binder.sectors : 0)};
-  }
+StateSizes state_sizes(const StampingSpec& spec) {
+  const PressSpec& press = spec.process.press;
+  const bool sprung = press.compliance > 0.0 || press.force_limit > 0.0;
+  const bool loaded = spec.binder.control == BinderControl::force;
+  const int dies = spec.die.bottom == DieBottom::flat ? 2 : 1;
+  return {1 + dies + spec.binder.sectors, (sprung ? 1 : 0) + (loaded ? spec.binder.sectors : 0)};
+}
 
 }  // namespace heddle::macroscale
