@@ -16,7 +16,14 @@ namespace {
 
 using Eigen::Vector3d;
 
-/// The sheet as nodes on grid lines and two triangles a cell.
+struct Box {
+  Vector3d low, high;
+  bool meets(const Box& other) const {
+    return (low.array() <= other.high.array()).all() && (other.low.array() <= high.array()).all();
+  }
+};
+
+/// The sheet as nodes on grid lines and cells of two triangles.
 class Sheet {
  public:
   explicit Sheet(const BlankState& blank)
@@ -24,26 +31,31 @@ class Sheet {
         rows_(blank.nv + 1),
         node_(static_cast<std::size_t>((blank.nu + 1) * rows_), -1),
         spacing_{spacing_along(0), spacing_along(1)} {
-    for (std::size_t n = 0; n < blank.grid.size(); ++n)
+    for (std::size_t n = 0; n < blank.grid.size(); ++n) {
       node_[static_cast<std::size_t>(blank.grid[n][0] * rows_ + blank.grid[n][1])] = static_cast<int>(n);
+      at_.emplace_back(blank.position[n].data());
+    }
+    for (const auto& q : blank.quads) {
+      const Vector3d &a = at(q[0]), &b = at(q[1]), &c = at(q[2]), &d = at(q[3]);
+      cell_.push_back(
+          {{a.cwiseMin(b).cwiseMin(c.cwiseMin(d)), a.cwiseMax(b).cwiseMax(c.cwiseMax(d))}, grid(q[0])});
+    }
   }
 
-  int nodes() const { return static_cast<int>(blank_.grid.size()); }
-  int triangles() const { return 2 * static_cast<int>(blank_.quads.size()); }
+  int nodes() const { return static_cast<int>(at_.size()); }
+  int cells() const { return static_cast<int>(cell_.size()); }
   double spacing() const { return std::max(spacing_[0], spacing_[1]); }
-  Vector3d at(int n) const { return Vector3d(blank_.position[static_cast<std::size_t>(n)].data()); }
-  std::array<int, 2> grid(int n) const { return blank_.grid[static_cast<std::size_t>(n)]; }
+  const Vector3d& at(int n) const { return at_[static_cast<std::size_t>(n)]; }
+  const std::array<int, 2>& grid(int n) const { return blank_.grid[static_cast<std::size_t>(n)]; }
+  const Box& box(int cell) const { return cell_[static_cast<std::size_t>(cell)].box; }
 
   int node(int i, int j) const {
     if (i < 0 || j < 0 || i > blank_.nu || j > blank_.nv) return -1;
     return node_[static_cast<std::size_t>(i * rows_ + j)];
   }
-  const std::array<int, 4>& cell_of(int triangle) const {
-    return blank_.quads[static_cast<std::size_t>(triangle / 2)];
-  }
-  std::array<int, 3> corners(int triangle) const {
-    const auto& q = cell_of(triangle);
-    return triangle % 2 == 0 ? std::array{q[0], q[1], q[2]} : std::array{q[0], q[2], q[3]};
+  std::array<std::array<int, 3>, 2> triangles(int cell) const {
+    const auto& q = blank_.quads[static_cast<std::size_t>(cell)];
+    return {{{q[0], q[1], q[2]}, {q[0], q[2], q[3]}}};
   }
 
   /// Unit normal from the chords to the neighbours; zero where there is none.
@@ -58,15 +70,16 @@ class Sheet {
   }
 
   /// Lines of the grid between a node and a cell: none if it is the cell's own.
-  std::array<int, 2> lines_between(int n, int triangle) const {
+  std::array<int, 2> lines_between(int n, int cell) const {
     const auto [i, j] = grid(n);
-    const auto [ci, cj] = grid(cell_of(triangle)[0]);
+    const auto [ci, cj] = cell_[static_cast<std::size_t>(cell)].grid;
     return {std::max({ci - i, i - ci - 1, 0}), std::max({cj - j, j - cj - 1, 0})};
   }
-  /// Distance between a node and a cell in the flat sheet [m].
-  double flat_distance(int n, int triangle) const {
-    const auto [di, dj] = lines_between(n, triangle);
-    return std::hypot(di * spacing_[0], dj * spacing_[1]);
+  /// Squared distance between a node and a cell in the flat sheet [m^2].
+  double flat_distance2(int n, int cell) const {
+    const auto [di, dj] = lines_between(n, cell);
+    const double u = di * spacing_[0], v = dj * spacing_[1];
+    return u * u + v * v;
   }
 
  private:
@@ -79,16 +92,22 @@ class Sheet {
     return std::hypot(b[0] - a[0], b[1] - a[1]);
   }
 
+  struct Cell {
+    Box box;
+    std::array<int, 2> grid;  ///< of its first node
+  };
   const BlankState& blank_;
   int rows_;
   std::vector<int> node_;
   std::array<double, 2> spacing_;
+  std::vector<Vector3d> at_;
+  std::vector<Cell> cell_;
 };
 
-/// Boxes of a uniform grid and the triangles whose own boxes reach into them.
-class TriangleGrid {
+/// Boxes of a uniform grid and the cells of the sheet whose own boxes reach into them.
+class BoxGrid {
  public:
-  TriangleGrid(const Sheet& sheet, double side) : inverse_side_(1.0 / side) {
+  BoxGrid(const Sheet& sheet, double side) : inverse_side_(1.0 / side) {
     Vector3d low = sheet.at(0), high = low;
     for (int n = 1; n < sheet.nodes(); ++n) {
       low = low.cwiseMin(sheet.at(n));
@@ -98,33 +117,25 @@ class TriangleGrid {
     for (int c = 0; c < 3; ++c) count_[c] = 1 + static_cast<int>((high[c] - low[c]) * inverse_side_);
     first_.assign(static_cast<std::size_t>(count_[0]) * count_[1] * count_[2] + 1, 0);
     // Counted, then filled.
-    for (int t = 0; t < sheet.triangles(); ++t)
-      each_box(box_of(sheet, t), [&](std::size_t box) { ++first_[box + 1]; });
+    for (int cell = 0; cell < sheet.cells(); ++cell)
+      each_box(sheet.box(cell), [&](std::size_t box) { ++first_[box + 1]; });
     std::partial_sum(first_.begin(), first_.end(), first_.begin());
-    triangle_.resize(static_cast<std::size_t>(first_.back()));
+    cell_.resize(static_cast<std::size_t>(first_.back()));
     std::vector<int> next(first_.begin(), first_.end() - 1);
-    for (int t = 0; t < sheet.triangles(); ++t)
-      each_box(box_of(sheet, t),
-               [&](std::size_t box) { triangle_[static_cast<std::size_t>(next[box]++)] = t; });
+    for (int cell = 0; cell < sheet.cells(); ++cell)
+      each_box(sheet.box(cell),
+               [&](std::size_t box) { cell_[static_cast<std::size_t>(next[box]++)] = cell; });
   }
 
-  /// Triangles near a box given by two corners; one may come more than once.
+  /// Cells near a box; one may come more than once.
   template <class Visit>
-  void each_near(const Vector3d& low, const Vector3d& high, const Visit& visit) const {
-    each_box({low, high}, [&](std::size_t box) {
-      for (int k = first_[box]; k < first_[box + 1]; ++k) visit(triangle_[static_cast<std::size_t>(k)]);
+  void each_near(const Box& around, const Visit& visit) const {
+    each_box(around, [&](std::size_t box) {
+      for (int k = first_[box]; k < first_[box + 1]; ++k) visit(cell_[static_cast<std::size_t>(k)]);
     });
   }
 
  private:
-  struct Box {
-    Vector3d low, high;
-  };
-  static Box box_of(const Sheet& sheet, int triangle) {
-    const auto [a, b, c] = sheet.corners(triangle);
-    const Vector3d x = sheet.at(a), y = sheet.at(b), z = sheet.at(c);
-    return {x.cwiseMin(y).cwiseMin(z), x.cwiseMax(y).cwiseMax(z)};
-  }
   template <class Visit>
   void each_box(const Box& box, const Visit& visit) const {
     std::array<int, 3> from, to;
@@ -141,7 +152,7 @@ class TriangleGrid {
   Vector3d low_;
   double inverse_side_;
   std::array<int, 3> count_{};
-  std::vector<int> first_, triangle_;
+  std::vector<int> first_, cell_;
 };
 
 /// Distance of a point to a triangle (Ericson 2005, section 5.1.5).
@@ -208,36 +219,34 @@ std::vector<double> turns(const Sheet& sheet) {
   return least;
 }
 
-double distance_to(const Sheet& sheet, const Vector3d& p, int triangle) {
-  const auto [a, b, c] = sheet.corners(triangle);
-  return distance_to(p, sheet.at(a), sheet.at(b), sheet.at(c));
-}
-
 // Nearest cell that is no neighbour, within `reach`.
-std::vector<double> distances(const Sheet& sheet, const TriangleGrid& triangles, double reach) {
+std::vector<double> distances(const Sheet& sheet, const BoxGrid& boxes, double reach) {
   const double neighbour = std::max(4.0 * sheet.spacing(), 4.0 * reach);
   std::vector<double> nearest(static_cast<std::size_t>(sheet.nodes()), reach);
   for (int n = 0; n < sheet.nodes(); ++n) {
-    const Vector3d p = sheet.at(n), around = Vector3d::Constant(reach);
+    const Vector3d &p = sheet.at(n), span = Vector3d::Constant(reach);
+    const Box around{p - span, p + span};
     double& best = nearest[static_cast<std::size_t>(n)];
-    triangles.each_near(p - around, p + around, [&](int t) {
-      if (sheet.flat_distance(n, t) < neighbour) return;
-      best = std::min(best, distance_to(sheet, p, t));
+    boxes.each_near(around, [&](int cell) {
+      if (sheet.flat_distance2(n, cell) < neighbour * neighbour || !sheet.box(cell).meets(around)) return;
+      for (const auto& [a, b, c] : sheet.triangles(cell))
+        best = std::min(best, distance_to(p, sheet.at(a), sheet.at(b), sheet.at(c)));
     });
   }
   return nearest;
 }
 
 // Whether the segment from node n to node m passes through a cell that shares no node with it.
-bool crosses_sheet(const Sheet& sheet, const TriangleGrid& triangles, int n, int m) {
-  const Vector3d p = sheet.at(n), q = sheet.at(m);
+bool crosses_sheet(const Sheet& sheet, const BoxGrid& boxes, int n, int m) {
+  const Vector3d &p = sheet.at(n), &q = sheet.at(m);
+  const Box around{p.cwiseMin(q), p.cwiseMax(q)};
   bool crosses = false;
-  triangles.each_near(p.cwiseMin(q), p.cwiseMax(q), [&](int t) {
-    if (crosses) return;
+  boxes.each_near(around, [&](int cell) {
+    if (crosses || !sheet.box(cell).meets(around)) return;
     for (const int end : {n, m})
-      if (sheet.lines_between(end, t) == std::array{0, 0}) return;
-    const auto [a, b, c] = sheet.corners(t);
-    crosses = passes_through(p, q, sheet.at(a), sheet.at(b), sheet.at(c));
+      if (sheet.lines_between(end, cell) == std::array{0, 0}) return;
+    for (const auto& [a, b, c] : sheet.triangles(cell))
+      crosses |= passes_through(p, q, sheet.at(a), sheet.at(b), sheet.at(c));
   });
   return crosses;
 }
@@ -305,9 +314,9 @@ Folds find_folds(const BlankState& blank, double thickness) {
   folds.reach = thickness;
   if (blank.quads.empty()) return folds;
   const Sheet sheet(blank);
-  const TriangleGrid triangles(sheet, std::max(1.5 * sheet.spacing(), thickness));
+  const BoxGrid boxes(sheet, std::max(1.5 * sheet.spacing(), thickness));
   folds.turn = turns(sheet);
-  folds.distance = distances(sheet, triangles, thickness);
+  folds.distance = distances(sheet, boxes, thickness);
   std::vector<char> marked(folds.turn.size(), 0);
   for (int n = 0; n < sheet.nodes(); ++n) {
     const auto at = static_cast<std::size_t>(n);
@@ -316,7 +325,7 @@ Folds find_folds(const BlankState& blank, double thickness) {
     marked[at] = folds.turn[at] > fold_turn || folds.distance[at] < thickness;
     const auto [i, j] = sheet.grid(n);
     for (const int m : {sheet.node(i + 1, j), sheet.node(i, j + 1)}) {
-      if (m < 0 || !crosses_sheet(sheet, triangles, n, m)) continue;
+      if (m < 0 || !crosses_sheet(sheet, boxes, n, m)) continue;
       ++folds.crossings;
       marked[at] = marked[static_cast<std::size_t>(m)] = 1;
     }
