@@ -9,8 +9,8 @@ half_width = 170;  // of the die
 
 If (tool == 1)
   // Apex at z = 0 before it is rounded, edges along 90, 210 and 330 degrees.
-  corner = 120;  // radius of the corners of the upper face
-  height = 110;
+  corner = 87;   // radius of the corners of the upper face
+  height = 80;
   round = 12;    // of the three edges and the apex
   Point(1) = {0, 0, 0};
   For k In {0:2}

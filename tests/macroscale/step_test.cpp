@@ -93,6 +93,36 @@ TEST_CASE("the shipped STEP files are what their script makes", "[macroscale][st
   }
 }
 
+TEST_CASE("the double dome's and the tetrahedron's STEP files are what their scripts make",
+          "[macroscale][step]") {
+  const Folder folder;
+  struct Tool {
+    const char *script, *name;
+    int number;
+  };
+  for (const Tool& tool : {Tool{"double_dome.geo", "double_dome_punch.step", 1},
+                           {"double_dome.geo", "double_dome_die.step", 2},
+                           {"double_dome.geo", "double_dome_binder.step", 3},
+                           {"tetrahedron.geo", "tetrahedron_punch.step", 1},
+                           {"tetrahedron.geo", "tetrahedron_die.step", 2}}) {
+    INFO(tool.name);
+    write_step(shipped / tool.script, tool.number, folder / tool.name);
+    const CadSummary fresh = summarise_step(folder / tool.name), kept = summarise_step(shipped / tool.name);
+    CHECK(kept.solids == 1);
+    CHECK(fresh.volume == Approx(kept.volume).epsilon(1e-9));
+    for (int c = 0; c < 3; ++c) {
+      CHECK(std::abs(fresh.low[c] - kept.low[c]) < 1e-12);
+      CHECK(std::abs(fresh.high[c] - kept.high[c]) < 1e-12);
+    }
+  }
+  // The binder's opening: a stadium of radius 70 mm about two axes 110 mm apart, its edge rounded by 3 mm.
+  const double r = 0.07, fillet = 0.003, apart = 0.11;
+  const double opening = pi * r * r + 2.0 * r * apart;
+  const double straight = 2.0 * apart * fillet * fillet * (1.0 - 0.25 * pi);
+  CHECK(summarise_step(shipped / "double_dome_binder.step").volume ==
+        Approx(0.03 * (0.44 * 0.32 - opening) - fillet_volume(r, fillet) - straight).epsilon(1e-9));
+}
+
 TEST_CASE("a STEP tool becomes a closed mesh that follows its surface", "[macroscale][step]") {
   const LoadedTool punch = load_tool(tool(shipped / "punch.step", 5e-3), expected);
   const double edge = edge_length({5e-3, expected_chord_error}, 0.07);
