@@ -71,6 +71,7 @@ State without_press(const Scene& scene, const State& state) {
     left.tool_z.push_back(state.tool_z[k]);
     left.memory.push_back(state.memory[k]);
   }
+  if (state.memory.size() > scene.tools.size()) left.memory.push_back(state.memory.back());  // between plies
   return left;
 }
 
