@@ -27,9 +27,9 @@ StampingSpec small_case(const std::vector<double>& layup_in_degrees) {
   spec.blank.spacing = 32e-3;
   spec.blank.plies = static_cast<int>(layup_in_degrees.size());
   for (const double angle : layup_in_degrees) spec.blank.layup.push_back(angle * degree);
-  spec.process.stroke = 25e-3;
-  spec.process.time = 0.15;
-  spec.process.steps = 5;
+  spec.process.stroke = 20e-3;
+  spec.process.time = 0.12;
+  spec.process.steps = 4;
   return spec;
 }
 
@@ -128,8 +128,8 @@ TEST_CASE("two plies that slip freely take twice the force of one", "[macroscale
   const auto force = [](int plies) {
     StampingSpec spec = small_case(std::vector<double>(static_cast<std::size_t>(plies), 0.0));
     spec.blank.spacing = 25e-3;
-    spec.process.stroke = 30e-3;
-    spec.process.steps = 6;
+    spec.process.stroke = 24e-3;
+    spec.process.steps = 4;
     const StampingResult result = run_stamping(spec, make_fabric({}), coulomb(1e-6));
     REQUIRE(result.summary.completed);
     return result.summary.peak_punch_force;

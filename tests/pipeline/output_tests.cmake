@@ -1,4 +1,4 @@
 # Files, pictures and the report, apart from configuration and solver.
 heddle_test(output
-  SOURCES painter_test.cpp report_test.cpp outputs_test.cpp vtu_test.cpp voxel_export_test.cpp
+  SOURCES painter_test.cpp report_test.cpp outputs_test.cpp vtu_test.cpp plies_outputs_test.cpp voxel_export_test.cpp
   LIBRARIES heddle::output nlohmann_json::nlohmann_json ZLIB::ZLIB)
