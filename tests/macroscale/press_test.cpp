@@ -327,6 +327,8 @@ TEST_CASE("a run that was kept before its release goes on to the same released b
 TEST_CASE("with everything that a press does at once the ledger closes and forces balance",
           "[macroscale][press]") {
   StampingSpec spec = small_case();
+  spec.blank.plies = GENERATE(1, 2);  // with friction between tows and, where there are two, between plies
+  spec.shear_friction.share = 0.3;
   spec.die.bottom = DieBottom::flat;
   spec.die.depth = 20e-3;
   spec.binder.sectors = 4;
