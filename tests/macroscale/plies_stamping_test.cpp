@@ -61,17 +61,17 @@ Kept run(const StampingSpec& spec, StampingControl control = {}) {
 }  // namespace
 
 TEST_CASE(
-    "a stamping of three plies closes its ledger and its force balance, and goes on from a checkpoint or "
+    "a stamping of two plies closes its ledger and its force balance, and goes on from a checkpoint or "
     "on one thread to the same bits",
     "[macroscale][plies][stamping][checkpoint]") {
-  const StampingSpec spec = small_case({0.0, 45.0, 90.0});
+  const StampingSpec spec = small_case({0.0, 45.0});
   const Kept whole = run(spec);
   const StampingSummary& s = whole.result.summary;
   REQUIRE(s.completed);
   CHECK(s.energy_residual_max < 0.01);
   CHECK(s.force_balance_residual_max < 1e-3);
   REQUIRE(s.stack);
-  CHECK(s.stack->interfaces.size() == 2);
+  CHECK(s.stack->interfaces.size() == 1);
   for (const InterfaceSummary& between : s.stack->interfaces) {
     CHECK(between.slip_max > between.slip_mean);
     CHECK(between.slip_mean > 0.0);
@@ -115,7 +115,11 @@ TEST_CASE("each ply of a state stands for itself", "[macroscale][plies][stamping
 
 TEST_CASE("a stack and its mirror image need the same force", "[macroscale][plies][stamping][invariant]") {
   const auto force = [](const std::vector<double>& layup) {
-    const StampingResult result = run(small_case(layup)).result;
+    StampingSpec spec = small_case(layup);
+    spec.process.stroke = 15e-3;
+    spec.process.time = 0.09;
+    spec.process.steps = 3;
+    const StampingResult result = run(spec).result;
     REQUIRE(result.summary.completed);
     return result.summary.peak_punch_force;
   };
