@@ -202,7 +202,7 @@ std::vector<Key> tool_keys() {
        .used_when = "!tools.binder.file",
        .help = "Rounding of the inner edge; keeps contact smooth where fabric leaves it."},
       {.path = "tools.binder.mass", .type = KeyType::quantity, .unit = "kg", .presence = required,
-       .range = "(0 kg, )", .stage = stamping, .help = "Of the moving binder."},
+       .range = "(0 kg, )", .stage = stamping, .used_when = "tools.binder.control=force", .help = "Of the moving binder."},
       {.path = "tools.binder.control", .type = KeyType::choice, .presence = defaulted, .default_text = "force",
        .choices = {"force", "gap"}, .stage = stamping,
        .help = "force: pressed by process.binder_force, free to move up and down; gap: held by stops at tools.binder.gap."},
