@@ -100,16 +100,11 @@ int parts_of_step(const StampingSpec& spec, double thickness, double spacing) {
 enum class Ending { done, failed, stopped };
 
 std::vector<std::pair<std::string, double>> terms_of(const PotentialTerms& p) {
-  return {{"inertia", p.inertia},
-          {"tow", p.tow},
-          {"shear", p.shear},
-          {"shear_rate", p.rate},
-          {"bending", p.bending},
-          {"twist", p.twist},
-          {"compaction", p.compaction},
-          {"loads", p.loads},
-          {"stabilisation", p.stabilisation},
-          {"compaction_plies", p.compaction_plies}};
+  return {{"inertia", p.inertia}, {"tow", p.tow},
+          {"shear", p.shear},     {"shear_rate", p.rate},
+          {"bending", p.bending}, {"twist", p.twist},
+          {"loads", p.loads},     {"compaction", p.compaction + p.compaction_plies},
+          {"stabilisation", p.stabilisation}};
 }
 
 // Residuals and energies of the last iterate, sorted by what is a number and what is not.
