@@ -100,10 +100,14 @@ int parts_of_step(const StampingSpec& spec, double thickness, double spacing) {
 enum class Ending { done, failed, stopped };
 
 std::vector<std::pair<std::string, double>> terms_of(const PotentialTerms& p) {
-  return {{"inertia", p.inertia}, {"tow", p.tow},
-          {"shear", p.shear},     {"shear_rate", p.rate},
-          {"bending", p.bending}, {"twist", p.twist},
-          {"loads", p.loads},     {"compaction", p.compaction + p.compaction_plies},
+  return {{"inertia", p.inertia},
+          {"tow", p.tow},
+          {"shear", p.shear},
+          {"shear_rate", p.rate},
+          {"bending", p.bending},
+          {"twist", p.twist},
+          {"compaction", p.compaction + p.compaction_plies},
+          {"loads", p.loads},
           {"stabilisation", p.stabilisation}};
 }
 
