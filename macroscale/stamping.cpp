@@ -47,10 +47,9 @@ std::vector<std::pair<std::string, double>> terms_of(const PotentialTerms& p) {
           {"shear_rate", p.rate},
           {"bending", p.bending},
           {"twist", p.twist},
-          {"compaction", p.compaction},
+          {"compaction", p.compaction + p.compaction_plies},
           {"loads", p.loads},
-          {"stabilisation", p.stabilisation},
-          {"compaction_plies", p.compaction_plies}};
+          {"stabilisation", p.stabilisation}};
 }
 
 // Residuals and energies of the last iterate, sorted by what is a number and what is not.
