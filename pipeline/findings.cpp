@@ -25,9 +25,10 @@ std::string description_of(const Case& a_case) {
   const std::string punch = s.punch.file
                                 ? "by the punch of " + s.punch.file->source.file.filename().string()
                                 : fmt::format("into a hemisphere of {:.0f} mm radius", 1e3 * s.punch.radius);
-  return fmt::format("A {} blank of {} weave stamped {:.0f} mm deep {} in {:.2f} s.", blank_in_words(s.blank),
-                     a_case.cell->weave.pattern, 1e3 * s.process.stroke, punch,
-                     s.process.time / s.process.speed_scale);
+  const std::string plies = s.blank.plies > 1 ? fmt::format("{} plies of ", s.blank.plies) : "";
+  return fmt::format("A {} blank of {}{} weave stamped {:.0f} mm deep {} in {:.2f} s.",
+                     blank_in_words(s.blank), plies, a_case.cell->weave.pattern, 1e3 * s.process.stroke,
+                     punch, s.process.time / s.process.speed_scale);
 }
 
 std::vector<Condition> conditions_of(const Case& a_case) {
