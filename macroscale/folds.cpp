@@ -8,6 +8,7 @@
 
 #include <Eigen/Geometry>
 
+#include "core/triangle_walk.h"
 #include "macroscale/ply_state.h"
 
 namespace heddle::macroscale {
@@ -155,28 +156,6 @@ class BoxGrid {
   std::vector<int> first_, cell_;
 };
 
-/// Distance of a point to a triangle (Ericson 2005, section 5.1.5).
-double distance_to(const Vector3d& p, const Vector3d& a, const Vector3d& b, const Vector3d& c) {
-  const Vector3d ab = b - a, ac = c - a, ap = p - a;
-  const double d1 = ab.dot(ap), d2 = ac.dot(ap);
-  if (d1 <= 0.0 && d2 <= 0.0) return ap.norm();
-  const Vector3d bp = p - b;
-  const double d3 = ab.dot(bp), d4 = ac.dot(bp);
-  if (d3 >= 0.0 && d4 <= d3) return bp.norm();
-  const double vc = d1 * d4 - d3 * d2;
-  if (vc <= 0.0 && d1 >= 0.0 && d3 <= 0.0) return (ap - d1 / (d1 - d3) * ab).norm();
-  const Vector3d cp = p - c;
-  const double d5 = ab.dot(cp), d6 = ac.dot(cp);
-  if (d6 >= 0.0 && d5 <= d6) return cp.norm();
-  const double vb = d5 * d2 - d1 * d6;
-  if (vb <= 0.0 && d2 >= 0.0 && d6 <= 0.0) return (ap - d2 / (d2 - d6) * ac).norm();
-  const double va = d3 * d6 - d5 * d4;
-  if (va <= 0.0 && d4 - d3 >= 0.0 && d5 - d6 >= 0.0)
-    return (bp - (d4 - d3) / ((d4 - d3) + (d5 - d6)) * (c - b)).norm();
-  const double sum = va + vb + vc;
-  return (ap - (vb / sum) * ab - (vc / sum) * ac).norm();
-}
-
 /// Whether the way from p to q passes through a triangle (Moeller & Trumbore 1997). One that lies in its
 /// plane does not.
 bool passes_through(const Vector3d& p, const Vector3d& q, const Vector3d& a, const Vector3d& b,
@@ -230,7 +209,7 @@ std::vector<double> distances(const Sheet& sheet, const BoxGrid& boxes, double r
     boxes.each_near(around, [&](int cell) {
       if (sheet.flat_distance2(n, cell) < neighbour * neighbour || !sheet.box(cell).meets(around)) return;
       for (const auto& [a, b, c] : sheet.triangles(cell))
-        best = std::min(best, distance_to(p, sheet.at(a), sheet.at(b), sheet.at(c)));
+        best = std::min(best, std::sqrt(squared_distance(sheet.at(a), sheet.at(b), sheet.at(c), p)));
     });
   }
   return nearest;

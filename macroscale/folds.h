@@ -1,6 +1,7 @@
 #pragma once
 
 #include <array>
+#include <numbers>
 #include <vector>
 
 #include "macroscale/stamping.h"
@@ -8,8 +9,8 @@
 namespace heddle::macroscale {
 
 /// From where on a turn of the sheet is a fold: normals within four spacings of each other.
-inline constexpr double fold_turn = 2.0943951023931953;  ///< 120 deg [rad]
-inline constexpr int fold_span = 4;                      ///< [spacings]
+inline constexpr double fold_turn = 2.0 * std::numbers::pi / 3.0;  ///< [rad]
+inline constexpr int fold_span = 4;                                ///< [spacings]
 
 /// One connected part of the grid whose nodes fold or come near another part of the sheet.
 struct FoldPlace {

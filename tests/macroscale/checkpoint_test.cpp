@@ -10,28 +10,16 @@
 #include "macroscale/checkpoint.h"
 #include "macroscale/stamping.h"
 #include "tests/macroscale/sample_fabric.h"
+#include "tests/macroscale/sample_stamping.h"
 
 using namespace heddle::macroscale;
 using heddle::Hdf5Reader;
 using heddle::Hdf5Writer;
+using heddle::test::coarse_stamping;
+using heddle::test::coulomb;
 using heddle::test::make_fabric;
 
 namespace {
-
-StampingSpec small_case() {
-  StampingSpec spec;
-  spec.blank.spacing = 32e-3;  // 11 x 11 nodes
-  spec.process.stroke = 25e-3;
-  spec.process.time = 0.15;
-  spec.process.steps = 5;
-  return spec;
-}
-
-heddle::friction::Model coulomb() {
-  heddle::friction::Model model;
-  model.law = heddle::friction::Coulomb{0.3};
-  return model;
-}
 
 std::string bytes_of(const StampingCheckpoint& checkpoint) {
   Hdf5Writer file;
@@ -92,7 +80,7 @@ bool any_contact(const State& state, double heddle::friction::ContactState::*mem
 
 TEST_CASE("a checkpoint keeps every bit of state, history, contact memory and picture",
           "[macroscale][checkpoint]") {
-  StampingSpec spec = small_case();
+  StampingSpec spec = coarse_stamping(5);
   spec.process.steps = 3;
   const Kept kept = run(spec);
   REQUIRE(kept.checkpoints.size() == 5);  // binder closed, three steps, the end
@@ -109,7 +97,7 @@ TEST_CASE("a checkpoint keeps every bit of state, history, contact memory and pi
 
 TEST_CASE("a run that goes on from any of its checkpoints ends with the same bits",
           "[macroscale][checkpoint]") {
-  const StampingSpec spec = small_case();
+  const StampingSpec spec = coarse_stamping(5);
   static const Kept whole = run(spec);
   REQUIRE(whole.result.summary.completed);
   const std::size_t at = GENERATE(std::size_t{0}, 3, 5);  // 5: nothing left to do
@@ -132,7 +120,7 @@ TEST_CASE("friction with a memory goes on from a checkpoint to the same bits, an
   using heddle::friction::ContactState;
   const bool resistance = GENERATE(true, false);
   const heddle::friction::Model model = resistance ? with_slip_resistance() : with_film_memory();
-  const StampingSpec spec = small_case();
+  const StampingSpec spec = coarse_stamping(5);
   const Kept whole = run(spec, {}, firm, model);
   REQUIRE(whole.result.summary.completed);
   StampingCheckpoint checkpoint = from(whole.checkpoints[3]);
@@ -163,7 +151,7 @@ TEST_CASE("friction with a memory goes on from a checkpoint to the same bits, an
 
 TEST_CASE("a run stopped between Newton iterations keeps its last whole step, and goes on to the same bits",
           "[macroscale][checkpoint]") {
-  const StampingSpec spec = small_case();
+  const StampingSpec spec = coarse_stamping(5);
   int asked = 0;
   StampingControl counted;
   counted.stop = [&] { return ++asked, false; };
@@ -194,7 +182,7 @@ TEST_CASE("a run stopped between Newton iterations keeps its last whole step, an
 
 TEST_CASE("a stamping that fails says where its last attempt stood, and what stood out of balance",
           "[macroscale][checkpoint]") {
-  const StampingSpec spec = small_case();
+  const StampingSpec spec = coarse_stamping(5);
   const Kept kept = run(spec, {}, soft);
   REQUIRE(kept.result.failure);
   REQUIRE_FALSE(kept.checkpoints.empty());
@@ -224,7 +212,7 @@ TEST_CASE("a stamping that fails says where its last attempt stood, and what sto
 TEST_CASE("a Newton search that runs out of iterations leaves its worst nodes behind",
           "[macroscale][checkpoint]") {
   // A blank that cannot close: the binder pushes it through its own middle at once.
-  StampingSpec spec = small_case();
+  StampingSpec spec = coarse_stamping(5);
   spec.process.binder_force = 1e7;
   const Kept kept = run(spec);
   REQUIRE(kept.result.failure);
@@ -236,7 +224,7 @@ TEST_CASE("a Newton search that runs out of iterations leaves its worst nodes be
 
 TEST_CASE("a checkpoint of another blank or another number of steps is refused",
           "[macroscale][checkpoint][wrong input]") {
-  StampingSpec spec = small_case();
+  StampingSpec spec = coarse_stamping(5);
   spec.process.steps = 2;
   const Kept kept = run(spec);
   const StampingCheckpoint checkpoint = from(kept.checkpoints.back());

@@ -14,8 +14,10 @@
 #include "macroscale/stamping.h"
 #include "tests/macroscale/random_stampings.h"
 #include "tests/macroscale/sample_fabric.h"
+#include "tests/macroscale/sample_stamping.h"
 
 using namespace heddle::macroscale;
+using heddle::test::coulomb;
 using heddle::test::make_fabric;
 
 namespace {
@@ -23,20 +25,10 @@ namespace {
 constexpr double degree = std::numbers::pi / 180.0;
 
 StampingSpec small_case(const std::vector<double>& layup_in_degrees) {
-  StampingSpec spec;
-  spec.blank.spacing = 32e-3;
+  StampingSpec spec = heddle::test::coarse_stamping(5);
   spec.blank.plies = static_cast<int>(layup_in_degrees.size());
   for (const double angle : layup_in_degrees) spec.blank.layup.push_back(angle * degree);
-  spec.process.stroke = 20e-3;
-  spec.process.time = 0.12;
-  spec.process.steps = 4;
   return spec;
-}
-
-heddle::friction::Model coulomb(double mu = 0.3) {
-  heddle::friction::Model model;
-  model.law = heddle::friction::Coulomb{mu};
-  return model;
 }
 
 std::string bytes_of(const StampingCheckpoint& checkpoint) {

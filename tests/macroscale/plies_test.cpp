@@ -12,6 +12,7 @@
 #include "macroscale/ledger.h"
 #include "macroscale/system.h"
 #include "tests/derivative_check.h"
+#include "tests/macroscale/matrix_product.h"
 #include "tests/macroscale/quasi_static.h"
 #include "tests/macroscale/sample_fabric.h"
 
@@ -20,6 +21,7 @@ using Eigen::Vector3d;
 using Eigen::VectorXd;
 using heddle::test::derivative_gap;
 using heddle::test::make_fabric;
+using heddle::test::multiply;
 using heddle::test::run_at_rest;
 using heddle::test::run_steps;
 
@@ -79,17 +81,6 @@ void load_all(Bench& b, const System& system) {
     point.context.pressure = 1e4;
   }
   REQUIRE(system.friction_rows() == 1);
-}
-
-VectorXd multiply(const heddle::SymmetricPattern& pattern, std::span<const double> values,
-                  const VectorXd& d) {
-  VectorXd y = VectorXd::Zero(d.size());
-  for (int j = 0; j < pattern.size; ++j)
-    for (int k = pattern.column_start[j]; k < pattern.column_start[j + 1]; ++k) {
-      y[pattern.row[k]] += values[k] * d[j];
-      if (pattern.row[k] != j) y[j] += values[k] * d[pattern.row[k]];
-    }
-  return y;
 }
 
 }  // namespace

@@ -13,26 +13,14 @@
 #include "macroscale/stamping_scene.h"
 #include "macroscale/system.h"
 #include "tests/macroscale/sample_fabric.h"
+#include "tests/macroscale/sample_stamping.h"
 
 using namespace heddle::macroscale;
+using heddle::test::coarse_stamping;
+using heddle::test::coulomb;
 using heddle::test::make_fabric;
 
 namespace {
-
-StampingSpec small_case() {
-  StampingSpec spec;
-  spec.blank.spacing = 32e-3;  // 11 x 11 nodes
-  spec.process.stroke = 25e-3;
-  spec.process.time = 0.15;
-  spec.process.steps = 10;
-  return spec;
-}
-
-heddle::friction::Model coulomb(double mu = 0.3) {
-  heddle::friction::Model model;
-  model.law = heddle::friction::Coulomb{mu};
-  return model;
-}
 
 StampingResult run(const StampingSpec& spec, double rate_consistency = 0.0, double mu = 0.3) {
   return run_stamping(spec, make_fabric({.rate_consistency = rate_consistency}), coulomb(mu));
@@ -60,7 +48,7 @@ double force_at(const std::vector<HistoryRow>& history, double way) {
 
 TEST_CASE("with gravity on the weight's work is in the books, and off it is not there",
           "[macroscale][press][gravity]") {
-  StampingSpec spec = small_case();
+  StampingSpec spec = coarse_stamping(10);
   const auto off = run(spec);
   spec.process.press.gravity = true;
   const auto on = run(spec);
@@ -81,7 +69,7 @@ TEST_CASE("with gravity on the weight's work is in the books, and off it is not 
 
 TEST_CASE("a press that gives way stretches the rigid force over stroke by F / k",
           "[macroscale][press][compliance]") {
-  StampingSpec spec = small_case();
+  StampingSpec spec = coarse_stamping(10);
   spec.process.steps = 25;
   const auto rigid = run(spec);
   spec.process.press.compliance = 2e-5;  // 1 mm at 50 N
@@ -101,7 +89,7 @@ TEST_CASE("a press that gives way stretches the rigid force over stroke by F / k
 
 TEST_CASE("compliance, offset and tilt are off to the bit and linear when tiny",
           "[macroscale][press][effect]") {
-  StampingSpec spec = small_case();
+  StampingSpec spec = coarse_stamping(10);
   spec.process.steps = 5;
   const auto base = run(spec, 5.0);
   struct Response {
@@ -145,7 +133,7 @@ TEST_CASE("compliance, offset and tilt are off to the bit and linear when tiny",
 TEST_CASE("a punch off its axis the other way, and a binder tilted the other way, mirror the draw-in",
           "[macroscale][press][effect]") {
   const auto rays = [](double offset, double tilt) {
-    StampingSpec spec = small_case();
+    StampingSpec spec = coarse_stamping(10);
     spec.process.press.punch_offset = {offset, 0.0};
     spec.process.press.binder_tilt = tilt;
     const auto result = run(spec);
@@ -163,7 +151,7 @@ TEST_CASE("a punch off its axis the other way, and a binder tilted the other way
 
 TEST_CASE("springs behind the binder add their stiffness times its way to its force",
           "[macroscale][press][binder]") {
-  StampingSpec spec = small_case();
+  StampingSpec spec = coarse_stamping(10);
   spec.binder.stiffness = 1e7;
   std::vector<BlankState> states;
   const auto result = run_stamping(spec, make_fabric({}), coulomb(),
@@ -180,7 +168,7 @@ TEST_CASE("springs behind the binder add their stiffness times its way to its fo
 
 TEST_CASE("a binder held at a gap stays there, and presses the flat fabric as its compaction says",
           "[macroscale][press][binder]") {
-  StampingSpec spec = small_case();
+  StampingSpec spec = coarse_stamping(10);
   spec.binder.control = BinderControl::gap;
   const auto fabric = make_fabric({});
   const double approach = 3e-5;
@@ -202,7 +190,7 @@ TEST_CASE("a binder held at a gap stays there, and presses the flat fabric as it
 }
 
 TEST_CASE("each sector of a split binder carries its own share", "[macroscale][press][binder]") {
-  StampingSpec spec = small_case();
+  StampingSpec spec = coarse_stamping(10);
   spec.blank.spacing = 16e-3;
   spec.binder.sectors = GENERATE(2, 4, 6);
   const auto fabric = make_fabric({});
@@ -225,7 +213,7 @@ TEST_CASE("each sector of a split binder carries its own share", "[macroscale][p
 
 TEST_CASE("a stamping with a split binder closes its books, and four sectors keep the square's halves alike",
           "[macroscale][press][binder]") {
-  StampingSpec spec = small_case();
+  StampingSpec spec = coarse_stamping(10);
   spec.binder.sectors = 4;
   const auto result = run(spec);
   check_books(result);
@@ -237,7 +225,7 @@ TEST_CASE("a stamping with a split binder closes its books, and four sectors kee
 
 TEST_CASE("a punch that bottoms out yields at its force, and the die's floor takes it",
           "[macroscale][press][bottoming]") {
-  StampingSpec spec = small_case();
+  StampingSpec spec = coarse_stamping(10);
   spec.die.depth = 20e-3;
   spec.die.bottom = DieBottom::flat;
   spec.process.press.force_limit = 300.0;
@@ -255,7 +243,7 @@ TEST_CASE(
     "while the tools stand still the resin's share of the punch force fades, and a resumed dwell has the "
     "same bits",
     "[macroscale][press][dwell]") {
-  StampingSpec spec = small_case();
+  StampingSpec spec = coarse_stamping(10);
   spec.process.press.dwell = 2.0;
   std::vector<StampingCheckpoint> kept;
   StampingControl control;
@@ -282,7 +270,7 @@ TEST_CASE(
 
 TEST_CASE("a released blank springs back flat, for its shear gives back all that it stored",
           "[macroscale][press][release]") {
-  StampingSpec spec = small_case();
+  StampingSpec spec = coarse_stamping(10);
   spec.process.press.release = true;
   const auto slippery = run(spec, 0.0, 0.0), rough = run(spec);
   for (const auto* result : {&slippery, &rough}) {
@@ -300,7 +288,7 @@ TEST_CASE("a released blank springs back flat, for its shear gives back all that
 
 TEST_CASE("a run that was kept before its release goes on to the same released blank",
           "[macroscale][press][release]") {
-  StampingSpec spec = small_case();
+  StampingSpec spec = coarse_stamping(10);
   spec.process.steps = 4;
   spec.process.press.release = true;
   std::vector<StampingCheckpoint> kept;
@@ -326,7 +314,7 @@ TEST_CASE("a run that was kept before its release goes on to the same released b
 
 TEST_CASE("with everything that a press does at once the ledger closes and forces balance",
           "[macroscale][press]") {
-  StampingSpec spec = small_case();
+  StampingSpec spec = coarse_stamping(10);
   spec.blank.plies = GENERATE(1, 2);  // with friction between tows and, where there are two, between plies
   spec.shear_friction.share = 0.3;
   spec.die.bottom = DieBottom::flat;

@@ -7,6 +7,7 @@
 #include "macroscale/ledger.h"
 #include "macroscale/system.h"
 #include "tests/derivative_check.h"
+#include "tests/macroscale/matrix_product.h"
 #include "tests/macroscale/sample_fabric.h"
 
 using namespace heddle::macroscale;
@@ -14,6 +15,7 @@ using Eigen::Vector3d;
 using Eigen::VectorXd;
 using heddle::test::derivative_gap;
 using heddle::test::make_fabric;
+using heddle::test::multiply;
 
 namespace {
 
@@ -63,17 +65,6 @@ VectorXd shaken(const Bench& b, double size) {
   VectorXd x = b.state.x;
   for (double& value : x) value += uniform(random);
   return x;
-}
-
-VectorXd multiply(const heddle::SymmetricPattern& pattern, std::span<const double> values,
-                  const VectorXd& d) {
-  VectorXd y = VectorXd::Zero(d.size());
-  for (int j = 0; j < pattern.size; ++j)
-    for (int k = pattern.column_start[j]; k < pattern.column_start[j + 1]; ++k) {
-      y[pattern.row[k]] += values[k] * d[j];
-      if (pattern.row[k] != j) y[j] += values[k] * d[pattern.row[k]];
-    }
-  return y;
 }
 
 }  // namespace
