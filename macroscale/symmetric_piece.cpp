@@ -107,7 +107,7 @@ Problems check_symmetry(const StampingSpec& spec) {
               "must be 0 in a part of which a piece is computed", whole);
   for (std::size_t axis = 0; axis < 2; ++axis) {
     if (!mirrored_across(blank.symmetry, axis)) continue;
-    f.refuse_if(press.punch_offset[axis] != 0.0, "blank.symmetry.offset"_rule,
+    f.refuse_if(std::abs(press.punch_offset[axis]) > 1e-12, "blank.symmetry.offset"_rule,
                 "effects.punch_misalignment.offset",
                 fmt::format("must leave the punch on the plane of symmetry {}", plane_names[axis]), whole);
     const Furthest worst = off_image(outline_of(blank), axis);
