@@ -7,6 +7,7 @@
 #include <functional>
 #include <map>
 #include <numbers>
+#include <optional>
 
 #include "macroscale/stamping.h"
 #include "macroscale/stamping_scene.h"
@@ -74,12 +75,11 @@ double shape_gap(const BlankState& whole, const BlankState& piece) {
   return gap / way;
 }
 
-StampingResult run(StampingSpec spec, Symmetry symmetry, double along_the_trellis = 0.0) {
+StampingResult run(StampingSpec spec, Symmetry symmetry,
+                   const std::optional<heddle::friction::Orientation>& orientation = {}) {
   spec.blank.symmetry = symmetry;
   heddle::friction::Model friction = coulomb(0.3);
-  if (along_the_trellis != 0.0)
-    friction.effects.orientation = heddle::friction::Orientation{
-        .amplitude = along_the_trellis, .form = heddle::friction::Orientation::Form::trellis};
+  friction.effects.orientation = orientation;
   const StampingResult result =
       run_stamping(spec, make_fabric({.rate_consistency = 5.0, .bending = 2e-3}), friction);
   CAPTURE(result.summary.failure);
@@ -115,11 +115,15 @@ TEST_CASE("V13: halves and quarter give forces, energies, shape and draw-in of t
           "[macroscale][symmetry][verification]") {
   StampingSpec spec = coarse_stamping(8);
   spec.blank.spacing = 20e-3;
-  const double along_the_trellis = GENERATE(0.0, 0.5);
-  const StampingResult whole = run(spec, Symmetry::none, along_the_trellis);
+  using heddle::friction::Orientation;
+  const auto direction =
+      GENERATE(std::optional<Orientation>{},
+               std::optional{Orientation{.amplitude = 0.5, .form = Orientation::Form::trellis}},
+               std::optional{Orientation{.amplitude = 0.5, .form = Orientation::Form::tows}});
+  const StampingResult whole = run(spec, Symmetry::none, direction);
   REQUIRE(whole.history.back().energy_bending > 0.0);
   for (const Symmetry symmetry : {Symmetry::half_x, Symmetry::half_y, Symmetry::quarter}) {
-    const StampingResult piece = run(spec, symmetry, along_the_trellis);
+    const StampingResult piece = run(spec, symmetry, direction);
     check_whole(whole, piece, 1e-6);
     CHECK(piece.summary.nodes < 0.6 * whole.summary.nodes);
   }
