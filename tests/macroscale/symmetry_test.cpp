@@ -124,7 +124,7 @@ TEST_CASE("V13: halves and quarter give forces, energies, shape and draw-in of t
   REQUIRE(whole.history.back().energy_bending > 0.0);
   for (const Symmetry symmetry : {Symmetry::half_x, Symmetry::half_y, Symmetry::quarter}) {
     const StampingResult piece = run(spec, symmetry, direction);
-    check_whole(whole, piece, direction ? 1e-5 : 1e-6);
+    check_whole(whole, piece, direction ? 3e-5 : 1e-6);
     CHECK(piece.summary.nodes < 0.6 * whole.summary.nodes);
   }
 }
