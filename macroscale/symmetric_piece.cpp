@@ -54,10 +54,6 @@ Furthest off_image(const Outline& outline, std::size_t axis) {
   return worst;
 }
 
-bool whole_quarter_turns(double angle) {
-  return std::abs(std::sin(2.0 * angle)) < 1e-9;
-}
-
 class Findings {
  public:
   void refuse_if(bool wrong, RuleId id, const std::string& key, std::string rule, std::string way_out) {
@@ -72,6 +68,10 @@ class Findings {
 };
 
 }  // namespace
+
+bool runs_along_axes(double orientation) {
+  return std::abs(std::sin(2.0 * orientation)) < 1e-9;
+}
 
 std::vector<char> held_by_planes(const Blank& blank) {
   if (blank.symmetry == Symmetry::none) return {};
@@ -93,7 +93,7 @@ Problems check_symmetry(const StampingSpec& spec) {
   const PressSpec& press = spec.process.press;
   const std::string whole = "Or leave blank.symmetry out: then the whole blank is computed.";
   Findings f;
-  f.refuse_if(!whole_quarter_turns(blank.orientation), "blank.symmetry.orientation"_rule, "blank.orientation",
+  f.refuse_if(!runs_along_axes(blank.orientation), "blank.symmetry.orientation"_rule, "blank.orientation",
               fmt::format("is {:g} deg: on a plane of symmetry tows must run along it or straight across",
                           blank.orientation * 180.0 / std::numbers::pi),
               "0 or 90 deg. " + whole);

@@ -8,6 +8,9 @@
 
 namespace heddle::macroscale {
 
+/// Whether tows at an angle to x run along x and y, as a plane of symmetry asks for [rad].
+bool runs_along_axes(double orientation);
+
 /// Unknowns that planes of symmetry hold: of each node on one, its way across. Empty without symmetry.
 std::vector<char> held_by_planes(const Blank& blank);
 

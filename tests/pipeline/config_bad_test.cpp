@@ -54,6 +54,7 @@ const std::vector<BadFile> bad_files{
       {"blank.symmetry.sectors", 6},
       {"blank.symmetry.offset", 15},
       {"blank.symmetry.tilt", 16}}},
+    {"quarters_of_turned_blanks", {{"orientation_study.blanks.symmetry", 8}}},
     {"half_of_a_lopsided_tool", {{"tools.punch.mirrored", 6}}},
     {"plies_without_their_angles", {{"blank.layup.plies", 7}, {"blank.nesting.thickness", 7}}},
     {"plies_with_too_few_shifts", {{"cell.shift_warp.plies", 4}}},
