@@ -21,6 +21,17 @@ int cells(double size, double spacing) {
   return std::max(1, static_cast<int>(std::ceil(size / spacing - 1e-9)));
 }
 
+// Where the tows run along x and y: which of them each grid direction is, and whether it points that way.
+struct GridAxis {
+  std::size_t axis;
+  bool forwards;
+};
+GridAxis axis_of(const std::array<double, 2>& warp, std::size_t direction) {
+  const std::array<double, 2> along = direction == 0 ? warp : std::array<double, 2>{-warp[1], warp[0]};
+  const std::size_t axis = std::abs(along[0]) > std::abs(along[1]) ? 0 : 1;
+  return {axis, along[axis] > 0.0};
+}
+
 // Exact at right angles: a blank at 90 degrees is the one at 0, turned without rounding.
 std::array<double, 2> direction_of(double orientation) {
   double c = std::cos(orientation), s = std::sin(orientation);
@@ -124,6 +135,15 @@ class Trimming {
     give_slivers_away();
   }
   const Cell& at(int i, int j) const { return cells_[i * nv_ + j]; }
+
+  /// Leaves the half of the cells that lies forwards (or backwards) in one grid direction.
+  void keep_half(std::size_t direction, bool forwards) {
+    for (int i = 0; i < nu_; ++i)
+      for (int j = 0; j < nv_; ++j) {
+        const bool ahead = direction == 0 ? 2 * i >= nu_ : 2 * j >= nv_;
+        if (ahead != forwards) cells_[i * nv_ + j] = Cell{};
+      }
+  }
 
  private:
   // To the neighbour across a side that holds most; where none is kept, the sliver stays. Equal neighbours
@@ -248,6 +268,14 @@ std::vector<Side> sides_of(const Ring& ring) {
   return sides;
 }
 
+bool in_piece(const Blank& blank, const Vector2d& x) {
+  for (std::size_t axis = 0; axis < 2; ++axis)
+    if (mirrored_across(blank.symmetry, axis) &&
+        x[static_cast<Eigen::Index>(axis)] < -1e-9 * blank.spacing[0])
+      return false;
+  return true;
+}
+
 // Points at equal steps along each stretch between two corners (of more than 30 degrees); an edge without
 // corners is one closed stretch. Corners have no normal and are left out.
 void add_edge(Blank& blank, Outline outline) {
@@ -279,25 +307,60 @@ void add_edge(Blank& blank, Outline outline) {
         passed += sides[(begin + k++) % n].length;
       const Side& side = sides[(begin + k) % n];
       const Vector2d x = side.from + (at - passed) * side.along;
-      blank.edge.push_back({blank.locate(x), x, side.inward});
+      if (in_piece(blank, x)) blank.edge.push_back({blank.locate(x), x, side.inward});
     }
     done += count;
     begin = (begin + count) % n;
   }
 }
 
-Blank trimmed_blank(const Outline& along_tows, double spacing, std::array<double, 2> warp, double z) {
+// Tow lines that cross a plane of symmetry begin there: of their first triple one half lies in the piece.
+void add_mirrored(Blank& blank) {
+  for (std::size_t direction = 0; direction < 2; ++direction) {
+    const GridAxis to = axis_of(blank.warp, direction);
+    if (!mirrored_across(blank.symmetry, to.axis)) continue;
+    const int step = to.forwards ? 1 : -1;
+    const int line = (direction == 0 ? blank.nu : blank.nv) / 2,
+              across = direction == 0 ? blank.nv : blank.nu;
+    const auto node = [&](int k, int n) { return direction == 0 ? blank.node(k, n) : blank.node(n, k); };
+    const auto share = [&](int n) {
+      const int cell = to.forwards ? line : line - 1;
+      const int quad = direction == 0 ? blank.quad(cell, n) : blank.quad(n, cell);
+      return quad < 0 ? 0.0 : blank.share[quad];
+    };
+    for (int n = 0; n <= across; ++n) {
+      const double width = 0.25 * (share(n - 1) + share(n)) * blank.spacing[1 - direction];
+      if (width > 0.0)
+        blank.mirrored.push_back({node(line, n), node(line + step, n), width, static_cast<int>(direction),
+                                  static_cast<int>(to.axis)});
+    }
+  }
+}
+
+Blank trimmed_blank(const Outline& along_tows, double spacing, std::array<double, 2> warp, double z,
+                    Symmetry symmetry) {
   Blank blank;
   const Extent extent = extent_of(along_tows.outer);
-  blank.nu = cells(extent.high[0] - extent.low[0], spacing);
-  blank.nv = cells(extent.high[1] - extent.low[1], spacing);
-  blank.spacing = {(extent.high[0] - extent.low[0]) / blank.nu, (extent.high[1] - extent.low[1]) / blank.nv};
-  blank.centre = {0.5 * (extent.low[0] + extent.high[0]), 0.5 * (extent.low[1] + extent.high[1])};
+  std::array<int, 2> count{};
+  for (std::size_t d = 0; d < 2; ++d) {
+    const double size = extent.high[d] - extent.low[d];
+    const bool halved = mirrored_across(symmetry, axis_of(warp, d).axis);
+    count[d] = halved ? 2 * cells(0.5 * size, spacing) : cells(size, spacing);
+    blank.spacing[d] = size / count[d];
+    blank.centre[d] = halved ? 0.0 : 0.5 * (extent.low[d] + extent.high[d]);
+  }
+  blank.nu = count[0];
+  blank.nv = count[1];
   blank.warp = warp;
-  const Trimming trimming(blank, along_tows);
+  blank.symmetry = symmetry;
+  Trimming trimming(blank, along_tows);
+  for (std::size_t d = 0; d < 2; ++d)
+    if (const GridAxis to = axis_of(warp, d); mirrored_across(symmetry, to.axis))
+      trimming.keep_half(d, to.forwards);
   number_nodes(blank, trimming, z);
   add_quads(blank, trimming);
   add_tow_lines(blank);
+  add_mirrored(blank);
   blank.end_node = blank.nodes();
   blank.end_quad = static_cast<int>(blank.quads.size());
   return blank;
@@ -337,16 +400,16 @@ MaterialPoint Ply::locate(const Vector2d& x) const {
   return {found, {(1.0 - u) * (1.0 - v), u * (1.0 - v), u * v, (1.0 - u) * v}};
 }
 
-Blank make_blank(const Outline& outline, double spacing, double orientation, double z) {
+Blank make_blank(const Outline& outline, double spacing, double orientation, double z, Symmetry symmetry) {
   const std::array<double, 2> warp = direction_of(orientation);
-  Blank blank = trimmed_blank(turned(outline, warp[0], -warp[1]), spacing, warp, z);
+  Blank blank = trimmed_blank(turned(outline, warp[0], -warp[1]), spacing, warp, z, symmetry);
   add_edge(blank, outline);
   return blank;
 }
 
 Blank make_blank(std::array<double, 2> size, double spacing, double orientation, double z) {
   const std::array<double, 2> warp = direction_of(orientation);
-  Blank blank = trimmed_blank(rectangle(size), spacing, warp, z);
+  Blank blank = trimmed_blank(rectangle(size), spacing, warp, z, Symmetry::none);
   add_edge(blank, turned(rectangle(size), warp[0], warp[1]));
   return blank;
 }

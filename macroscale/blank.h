@@ -7,6 +7,7 @@
 
 #include "macroscale/cell_piece.h"
 #include "macroscale/outline.h"
+#include "macroscale/symmetry.h"
 
 namespace heddle::macroscale {
 
@@ -23,6 +24,16 @@ struct TowTriple {
   int before, middle, after;
   double width;   ///< tributary width across the tow [m]
   int direction;  ///< 0 = along warp, 1 = along weft
+};
+
+/// Two neighbouring nodes on a tow line that crosses a plane of symmetry at the first. The third node of
+/// their triple is the mirror image of the second, so its second difference is twice what lies between them
+/// in the plane.
+struct MirroredTriple {
+  int middle, beside;
+  double width;   ///< tributary width across the tow, on this side of the plane [m]
+  int direction;  ///< 0 = along warp, 1 = along weft
+  int axis;       ///< across the plane: 0 = x, 1 = y
 };
 
 /// Two neighbouring nodes on one tow line.
@@ -78,9 +89,11 @@ struct Blank : Ply {
   std::vector<double> share;               ///< per quad: its material area over the cell's; 1 = whole
   std::vector<TowSegment> segments;
   std::vector<TowTriple> triples;
-  std::vector<double> node_area;  ///< tributary area [m^2]
-  std::vector<CellPiece> pieces;  ///< of all quads that the outline cuts, by quad
+  std::vector<MirroredTriple> mirrored;  ///< at planes of symmetry
+  std::vector<double> node_area;         ///< tributary area [m^2]
+  std::vector<CellPiece> pieces;         ///< of all quads that the outline cuts, by quad
   std::vector<Ply> above;
+  Symmetry symmetry = Symmetry::none;  ///< which piece of the outline it is
 
   int nodes() const { return static_cast<int>(reference.size()); }
   int plies() const { return 1 + static_cast<int>(above.size()); }
@@ -97,6 +110,12 @@ struct Blank : Ply {
   }
 };
 
+/// Whether a node lies on the plane of symmetry across an axis (0 = x, 1 = y); exact.
+inline bool on_plane(const Blank& blank, int node, std::size_t axis) {
+  return mirrored_across(blank.symmetry, axis) &&
+         blank.reference[node][static_cast<Eigen::Index>(axis)] == 0.0;
+}
+
 /// Cells with a smaller share are dropped and their area given to the neighbour that holds most: their outer
 /// nodes would hang on next to nothing.
 inline constexpr double smallest_share = 0.02;
@@ -107,7 +126,11 @@ std::array<Corner, 4> corners_of(const std::array<int, 4>& quad);
 /// Blank of any outline with its warp at `orientation` to x. The grid covers the outline's box along the tows
 /// and shares its centre. Areas sum to the outline's up to rounding.
 /// @param spacing  upper bound of the node spacing: ceil(extent / spacing) cells along each tow direction
-Blank make_blank(const Outline& outline, double spacing, double orientation, double z = 0.0);
+/// @param symmetry  of a symmetric outline with tows along x and y: the piece that is kept. Its grid is that
+/// of
+///                  the whole, with an even number of cells across each plane
+Blank make_blank(const Outline& outline, double spacing, double orientation, double z = 0.0,
+                 Symmetry symmetry = Symmetry::none);
 
 /// Rectangle of a given size along warp and weft, centred at the origin and turned as a whole: no cell is
 /// cut.

@@ -7,6 +7,7 @@
 
 #include "macroscale/outline_cut.h"
 #include "macroscale/press_check.h"
+#include "macroscale/symmetric_piece.h"
 
 namespace heddle::macroscale {
 
@@ -173,6 +174,7 @@ Problems check(const StampingSpec& spec) {
            mm(process.stroke), fmt::format("must be less than half the blank ({})", mm(half)),
            "A deeper stroke pulls the blank out of the binder.", {size_key(blank)});
   check_plies(f, blank, heat.has_value());
+  if (half > 0.0) f.add(check_symmetry(spec));
   check_shapes(f, punch, die, binder);
   f.demand(binder.mass > 0.0, "tools.binder.mass.range"_rule, "tools.binder.mass",
            fmt::format("{:g} kg", binder.mass), "must be > 0", "20 kg in the shipped case.");

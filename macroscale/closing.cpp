@@ -41,10 +41,10 @@ StepSummary close_binder(Scene& scene, System& system, const SolveOptions& optio
   closing.force_tolerance = 1e-6;
   closing.relative_tolerance = 1e-6;
   const std::vector<double> load = std::exchange(scene.load, {});
-  scene.held.assign(3 * scene.blank.nodes(), 0);
+  const std::vector<char> planes = std::exchange(scene.held, std::vector<char>(3 * scene.blank.nodes(), 0));
   for (int i = 0; i < scene.blank.nodes(); ++i) scene.held[3 * i] = scene.held[3 * i + 1] = 1;
   const StepSummary summary = rest(system, closing, dt, steps, state, step);
-  scene.held.clear();
+  scene.held = planes;
   scene.load = load;
   return summary;
 }
@@ -58,7 +58,8 @@ StepSummary settle(Scene& scene, System& system, const SolveOptions& options, St
   settling.frictionless = true;
   settling.force_tolerance = 1e-6 * mean_weight(scene);
   settling.relative_tolerance = 0.0;
-  scene.held.assign(3 * scene.blank.nodes(), 0);
+  const std::vector<char> planes = scene.held;
+  scene.held.resize(3 * scene.blank.nodes(), 0);
   for (int k = 0; k < static_cast<int>(scene.tools.size()); ++k) {
     if (scene.tools[k].role != Role::binder) continue;
     for (int i = 0; i < scene.blank.nodes(); ++i)
@@ -66,7 +67,7 @@ StepSummary settle(Scene& scene, System& system, const SolveOptions& options, St
         scene.held[3 * i] = scene.held[3 * i + 1] = 1;
   }
   const StepSummary summary = rest(system, settling, dt, steps, state, step);
-  scene.held.clear();
+  scene.held = planes;
   return summary;
 }
 

@@ -32,7 +32,14 @@ TowDirections at_node(const Blank& blank, const VectorXd& x, int node) {
     const int n = outside ? -1 : ply.node(line_i, line_j);
     return x.segment<3>(3 * (n < 0 ? node : n));
   };
-  return {neighbour(i + 1, j) - neighbour(i - 1, j), neighbour(i, j + 1) - neighbour(i, j - 1)};
+  TowDirections tows{neighbour(i + 1, j) - neighbour(i - 1, j), neighbour(i, j + 1) - neighbour(i, j - 1)};
+  // A tow that crosses a plane of symmetry does so at a right angle.
+  for (std::size_t axis = 0; axis < 2; ++axis)
+    if (on_plane(blank, node, axis)) {
+      Vector3d& across = (std::abs(ply.warp[0]) > 0.5) == (axis == 0) ? tows.warp : tows.weft;
+      across = Vector3d::Unit(static_cast<Eigen::Index>(axis)) * across[static_cast<Eigen::Index>(axis)];
+    }
+  return tows;
 }
 
 TowDirections in_cell(const std::array<int, 4>& quad, const VectorXd& x, std::size_t corner) {

@@ -16,7 +16,8 @@ StampingSpec coarse_companion(const StampingSpec& spec) {
   const std::vector<double> layup = spec.blank.layup.empty() ? std::vector{0.0} : spec.blank.layup;
   coarse.blank.spacing = 0.0;
   for (const double turned : layup) {
-    const Blank ply = make_blank(outline_of(spec.blank), spec.blank.spacing, spec.blank.orientation + turned);
+    const Blank ply = make_blank(outline_of(spec.blank), spec.blank.spacing, spec.blank.orientation + turned,
+                                 0.0, spec.blank.symmetry);
     coarse.blank.spacing =
         std::max({coarse.blank.spacing, halved(ply.spacing[0], ply.nu), halved(ply.spacing[1], ply.nv)});
   }

@@ -17,36 +17,37 @@ constexpr int punch = 0;  // the first tool of a stamping
 
 void add_to_history(HistoryRow& row, const StepAccount& account, const Scene& scene) {
   const StepLedger& l = account.ledger;
-  std::array<double, 3> friction{}, force{};  // of punch, die, binder, as Role counts them
+  const double all = images(scene.blank.symmetry);  // rows are of the whole part
+  std::array<double, 3> friction{}, force{};        // of punch, die, binder, as Role counts them
   for (std::size_t k = 0; k < scene.tools.size(); ++k) {
     const auto role = static_cast<std::size_t>(scene.tools[k].role);
-    friction[role] += l.friction[k];
-    force[role] += account.forces.on_tool[k].z();
+    friction[role] += all * l.friction[k];
+    force[role] += all * account.forces.on_tool[k].z();
   }
-  row.work_punch += l.work_driven;
-  row.work_binder += l.work_loaded;
-  row.work_gravity += l.work_dead;
-  row.energy_tow += l.tow;
-  row.energy_shear += l.shear;
-  row.energy_bending += l.bending;
-  row.energy_twist += l.twist;
-  row.energy_compaction += l.compaction + l.compaction_plies;
-  row.energy_kinetic += l.kinetic;
-  row.energy_press += l.press;
+  row.work_punch += all * l.work_driven;
+  row.work_binder += all * l.work_loaded;
+  row.work_gravity += all * l.work_dead;
+  row.energy_tow += all * l.tow;
+  row.energy_shear += all * l.shear;
+  row.energy_bending += all * l.bending;
+  row.energy_twist += all * l.twist;
+  row.energy_compaction += all * (l.compaction + l.compaction_plies);
+  row.energy_kinetic += all * l.kinetic;
+  row.energy_press += all * l.press;
   row.friction_punch += friction[0];
   row.friction_die += friction[1];
   row.friction_binder += friction[2];
-  if (l.friction.size() > scene.tools.size()) row.friction_plies += l.friction.back();
-  row.dissipation_shear_rate += l.shear_rate;
-  row.dissipation_shear_hysteresis += l.shear_hysteresis;
-  row.dissipation_artefact += l.artefact;
-  row.dissipation_numerical += l.numerical;
+  if (l.friction.size() > scene.tools.size()) row.friction_plies += all * l.friction.back();
+  row.dissipation_shear_rate += all * l.shear_rate;
+  row.dissipation_shear_hysteresis += all * l.shear_hysteresis;
+  row.dissipation_artefact += all * l.artefact;
+  row.dissipation_numerical += all * l.numerical;
   row.ledger_residual = ledger_residual(row);
-  row.friction_work_outside += l.friction_outside;
+  row.friction_work_outside += all * l.friction_outside;
   row.punch_force = force[0];
   row.die_force = force[1];
   row.binder_force = force[2];
-  row.force_balance = std::max(row.force_balance, account.forces.imbalance);
+  row.force_balance = std::max(row.force_balance, all * account.forces.imbalance);
 }
 
 void finish_row(HistoryRow& row, const BlankState& blank, const State& state, const System& system) {

@@ -76,6 +76,14 @@ Increment bending_increment(const System& system, const State& start, const Stat
     };
     add(sum, quadratic(system.bending_stiffness(t), difference(start), difference(end)));
   }
+  for (const MirroredTriple& t : system.scene().blank.mirrored) {
+    const auto difference = [&](const State& s) {
+      Vector3d apart = 2.0 * (s.node(t.beside) - s.node(t.middle));
+      apart[t.axis] = 0.0;
+      return apart;
+    };
+    add(sum, quadratic(system.bending_stiffness(t), difference(start), difference(end)));
+  }
   return sum;
 }
 

@@ -320,7 +320,9 @@ void summarise(StampingResult& result, const Blank& blank, const State& state, d
   }
   for (std::size_t k = 0; k < 8; ++k) {
     const double angle = 0.25 * std::numbers::pi * static_cast<double>(k);
-    const Eigen::Vector2d ray(std::cos(angle), std::sin(angle));
+    Eigen::Vector2d ray(std::cos(angle), std::sin(angle));
+    if (mirrored_across(blank.symmetry, 0)) ray.x() = std::abs(ray.x());
+    if (mirrored_across(blank.symmetry, 1)) ray.y() = std::abs(ray.y());
     const Eigen::Vector2d x = ray_length(blank.outline, {ray.x(), ray.y()}) * ray;
     s.draw_in_rays[k] = draw_in_at(blank, state, blank.locate(x), -ray);
   }

@@ -41,9 +41,10 @@ void book_departure(HistoryRow& row, const System& system, const State& state) {
   for (int k = 0; k < static_cast<int>(scene.tools.size()); ++k) {
     const Tool& tool = scene.tools[k];
     if (stays(tool)) continue;
-    const double pressed = pressed_by(system, state, k);
+    const double all = images(scene.blank.symmetry);
+    const double pressed = all * pressed_by(system, state, k);
     const double sprung =
-        has_unknown(tool) ? drive_at(tool, state.x[system.unknown_of(k)]).spring_energy : 0.0;
+        has_unknown(tool) ? all * drive_at(tool, state.x[system.unknown_of(k)]).spring_energy : 0.0;
     (tool.role == Role::punch ? row.work_punch : row.work_binder) -= pressed + sprung;
     row.energy_compaction -= pressed;
     row.energy_press -= sprung;

@@ -31,6 +31,10 @@ std::vector<double> nodal_shear_angle(const Blank& blank, const std::vector<doub
   }
   for (std::size_t i = 0; i < sum.size(); ++i)
     if (weight[i] > 0.0) sum[i] /= weight[i];
+  // Trellis angles turn their sign in a mirror, so those on either side of a plane cancel.
+  if (blank.symmetry != Symmetry::none)
+    for (int i = 0; i < blank.nodes(); ++i)
+      if (on_plane(blank, i, 0) || on_plane(blank, i, 1)) sum[i] = 0.0;
   return sum;
 }
 

@@ -134,7 +134,8 @@ class Run {
     options_.stop = control.stop;
     // A nodal residual is small beside the binder's share of a node as well: under 5 N a millinewton is not.
     options_.force_tolerance =
-        std::min(options_.force_tolerance, 1e-2 * spec.process.binder_force / scene_.blank.nodes());
+        std::min(options_.force_tolerance,
+                 1e-2 * spec.process.binder_force / (images(spec.blank.symmetry) * scene_.blank.nodes()));
     if (spec.process.press.gravity)
       options_.force_tolerance = std::min(options_.force_tolerance, 1e-2 * mean_weight(scene_));
     now_.state = initial_state(scene_);

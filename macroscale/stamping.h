@@ -16,6 +16,7 @@
 #include "macroscale/outline.h"
 #include "macroscale/press.h"
 #include "macroscale/shear_friction.h"
+#include "macroscale/symmetry.h"
 #include "macroscale/thermal/blank_heat.h"
 #include "macroscale/tool_file.h"
 #include "mesoscale/fabric_properties.h"
@@ -41,6 +42,7 @@ struct BlankSpec {
   std::vector<double>
       layup;             ///< warp of each ply against `orientation`, bottom first; empty: all alike [rad]
   double nesting = 0.0;  ///< how much nearer than a thickness two plies lie unpressed [m]
+  Symmetry symmetry = Symmetry::none;
 };
 
 /// All plies on one another before anything presses them [m].

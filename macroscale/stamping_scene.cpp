@@ -10,6 +10,7 @@
 #include "macroscale/closing.h"
 #include "macroscale/contact.h"
 #include "macroscale/punch_profile.h"
+#include "macroscale/symmetric_piece.h"
 #include "macroscale/tool_set.h"
 
 namespace heddle::macroscale {
@@ -76,7 +77,8 @@ double binder_weight(const StampingSpec& spec) {
 
 Blank stamping_blank(const StampingSpec& spec, const mesoscale::FabricProperties& fabric) {
   const BlankSpec& blank = spec.blank;
-  if (blank.plies == 1) return make_blank(outline_of(blank), blank.spacing, blank.orientation);
+  if (blank.plies == 1)
+    return make_blank(outline_of(blank), blank.spacing, blank.orientation, 0.0, blank.symmetry);
   const double apart =
       fabric.thickness - blank.nesting - 2.0 * closed_approach(spec, fabric, binder_weight(spec));
   std::vector<Blank> plies;
@@ -113,6 +115,8 @@ Scene stamping_scene(const StampingSpec& spec, const mesoscale::FabricProperties
         {Role::die, PlaneShape{Vector3d(0.0, 0.0, -closed - spec.die.depth)}, Motion::fixed, 0.0, 0.0});
   for (Tool& binder : binders_of(spec, tools.binder, closed, weight))
     scene.tools.push_back(std::move(binder));
+  take_share(scene.tools, spec.blank.symmetry);
+  scene.held = held_by_planes(scene.blank);
   if (press.gravity) scene.load = weight_of_fabric(scene);
   scene.blank_temperature = spec.process.blank_temperature;
   scene.tool_temperature = spec.process.tool_temperature;

@@ -49,6 +49,12 @@ Vector3d second_difference(const VectorXd& x, const TowTriple& t) {
   return node_of(x, t.before) - 2.0 * node_of(x, t.middle) + node_of(x, t.after);
 }
 
+Vector3d second_difference(const VectorXd& x, const MirroredTriple& t) {
+  Vector3d difference = 2.0 * (node_of(x, t.beside) - node_of(x, t.middle));
+  difference[t.axis] = 0.0;
+  return difference;
+}
+
 Vector3d twist_of(const VectorXd& x, const std::array<int, 4>& q) {
   return node_of(x, q[0]) - node_of(x, q[1]) + node_of(x, q[2]) - node_of(x, q[3]);
 }
@@ -78,6 +84,10 @@ double System::bending_stiffness(const TowTriple& t) const {
   const Blank& blank = scene_.blank;
   const double h = blank.ply(blank.ply_of_node(t.middle)).spacing[t.direction];
   return scene_.fabric->bending[t.direction](scene_.blank_temperature) * t.width / (h * h * h);
+}
+
+double System::bending_stiffness(const MirroredTriple& t) const {
+  return bending_stiffness(TowTriple{t.beside, t.middle, t.beside, t.width, t.direction});
 }
 
 double System::twist_stiffness(int quad) const {
@@ -227,6 +237,8 @@ PotentialTerms System::potential(const StepData& step, const Position& at) const
   e.bending = ordered_sum(static_cast<int>(blank.triples.size()), [&](int t) {
     return 0.5 * bending_stiffness(blank.triples[t]) * second_difference(x, blank.triples[t]).squaredNorm();
   });
+  for (const MirroredTriple& t : blank.mirrored)
+    e.bending += 0.5 * bending_stiffness(t) * second_difference(x, t).squaredNorm();
   e.twist = ordered_sum(
       quads, [&](int q) { return 0.5 * twist_stiffness(q) * twist_of(x, blank.quads[q]).squaredNorm(); });
 
@@ -297,6 +309,11 @@ VectorXd System::full_gradient(const StepData& step, const Position& at) const {
     g.segment<3>(3 * t.before) += force;
     g.segment<3>(3 * t.middle) -= 2.0 * force;
     g.segment<3>(3 * t.after) += force;
+  }
+  for (const MirroredTriple& t : blank.mirrored) {
+    const Vector3d force = 2.0 * bending_stiffness(t) * second_difference(x, t);
+    g.segment<3>(3 * t.beside) += force;
+    g.segment<3>(3 * t.middle) -= force;
   }
   for (int quad = 0; quad < static_cast<int>(blank.quads.size()); ++quad) {
     const auto& q = blank.quads[quad];

@@ -162,6 +162,7 @@ class System {
   FrictionSettings friction_settings() const { return {scene_.friction, scene_.slip_smoothing}; }
   /// Energies and forces of the constant (quadratic) terms.
   double bending_stiffness(const TowTriple& triple) const;
+  double bending_stiffness(const MirroredTriple& triple) const;
   double twist_stiffness(int quad) const;
 
  private:
@@ -170,6 +171,7 @@ class System {
   void add_corners(const StepData& step, const Position& at, Filter filter);
   void add_contact(const StepData& step, const Position& at, Filter filter);
   void add_contact_in_cells(const StepData& step, const Position& at, Filter filter);
+  void add_mirrored();
   void close_body_row(const StepData& step, const Position& at, int k, int body);
   void add_contact_of_plies(const StepData& step, const Position& at, Filter filter);
   void evaluate_plies(const StepData& step, Position& at) const;

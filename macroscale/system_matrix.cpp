@@ -153,6 +153,18 @@ void System::assemble_constant() {
   }
 }
 
+// Nothing bends across a plane of symmetry: the only terms here that differ from one direction to another.
+void System::add_mirrored() {
+  for (const MirroredTriple& t : scene_.blank.mirrored) {
+    Eigen::Vector3d in_plane = Eigen::Vector3d::Ones();
+    in_plane[t.axis] = 0.0;
+    const Matrix3d part = (4.0 * bending_stiffness(t) * in_plane).asDiagonal();
+    add_block(block(t.middle, t.middle), part);
+    add_block(block(t.beside, t.beside), part);
+    add_block(block(std::max(t.middle, t.beside), std::min(t.middle, t.beside)), -part);
+  }
+}
+
 void System::add_corners(const StepData& step, const Position& at, Filter filter) {
   const std::vector<CornerLaw> laws = corner_laws(step);
   for (const auto& colour : colours_)
@@ -283,6 +295,7 @@ void System::finish_matrix(double shift) {
 
 void System::assemble(const StepData& step, const Position& at, Filter filter, double shift) {
   begin_matrix(step);
+  add_mirrored();
   add_corners(step, at, filter);
   add_contact(step, at, filter);
   add_contact_of_plies(step, at, filter);

@@ -9,6 +9,7 @@
 #include <tbb/parallel_reduce.h>
 
 #include "macroscale/blank.h"
+#include "macroscale/symmetric_piece.h"
 
 namespace heddle::macroscale {
 
@@ -204,8 +205,8 @@ Box reach_of_fabric(const StampingSpec& spec, Role role, const TriangleMesh& mes
 
 Problems check_tools(const StampingSpec& spec, double thickness) {
   Problems problems = check_passage(spec, Role::die, thickness);
-  for (const Problems& more :
-       {check_passage(spec, Role::binder, thickness), check_punch_height(spec), check_hold(spec)})
+  for (const Problems& more : {check_passage(spec, Role::binder, thickness), check_punch_height(spec),
+                               check_hold(spec), check_mirrored_tools(spec)})
     problems.insert(problems.end(), more.begin(), more.end());
   return problems;
 }

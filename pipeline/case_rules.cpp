@@ -4,10 +4,12 @@
 
 #include <algorithm>
 #include <iterator>
+#include <numbers>
 
 #include "friction/calibrate.h"
 #include "friction/combinations.h"
 #include "friction/test_design.h"
+#include "macroscale/symmetric_piece.h"
 #include "pipeline/case_settings.h"
 #include "pipeline/stamping_study_keys.h"
 #include "pipeline/thermal_keys.h"
@@ -167,6 +169,22 @@ Problems check_clearance(const mesoscale::CellSpec& cell, const macroscale::Stam
            {"tools.punch.radius", "weave.fabric_thickness"}}};
 }
 
+/// Blanks turned against the planes on which a piece of them would end.
+Problems check_turned_pieces(const Case& a_case) {
+  if (!a_case.stamping || a_case.stamping->blank.symmetry == macroscale::Symmetry::none) return {};
+  const auto& blanks = a_case.orientation_study->blanks;
+  const auto turned = std::find_if_not(blanks.begin(), blanks.end(), macroscale::runs_along_axes);
+  if (turned == blanks.end()) return {};
+  return {{"orientation_study.blanks.symmetry"_rule,
+           "orientation_study.blanks",
+           fmt::format("{:g} deg", *turned * 180.0 / std::numbers::pi),
+           "must be 0 or 90 deg where blank.symmetry has a piece of the blank computed",
+           "Leave blank.symmetry out: then the whole of each blank is computed.",
+           "",
+           0,
+           {"blank.symmetry"}}};
+}
+
 /// Plies that nest by half a thickness would have their middles inside each other's faces.
 Problems check_nesting(const mesoscale::CellSpec& cell, const macroscale::BlankSpec& blank) {
   const double most = 0.5 * cell.weave.fabric_thickness;
@@ -269,6 +287,7 @@ Problems check_between_keys(const Case& a_case, const ReadConfig& config) {
   if (a_case.orientation_study) {
     append(problems, check_distinct(a_case.orientation_study->blanks, "orientation_study.blanks"));
     append(problems, check_distinct(a_case.orientation_study->friction, "orientation_study.friction"));
+    append(problems, check_turned_pieces(a_case));
   }
   if (const auto study = stamping_study_of(a_case.settings)) append(problems, check_stamping_study(*study));
   if (a_case.study && !any_below(config.failed, {"weave", "cell", "study"}))

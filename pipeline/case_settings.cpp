@@ -316,6 +316,13 @@ std::optional<macroscale::ToolFileSpec> tool_file_of(const Settings& settings, c
   return spec;
 }
 
+macroscale::Symmetry symmetry_of(const Settings& settings) {
+  using macroscale::Symmetry;
+  if (settings.is("blank.symmetry", "half_x")) return Symmetry::half_x;
+  if (settings.is("blank.symmetry", "half_y")) return Symmetry::half_y;
+  return settings.is("blank.symmetry", "quarter") ? Symmetry::quarter : Symmetry::none;
+}
+
 macroscale::StampingSpec stamping_of(const Settings& settings, const std::filesystem::path& folder) {
   macroscale::StampingSpec stamping;
   const bool drawn = settings.is("blank.shape", "polygon") || settings.is("blank.shape", "drawing");
@@ -332,6 +339,7 @@ macroscale::StampingSpec stamping_of(const Settings& settings, const std::filesy
   take(settings, "blank.plies", stamping.blank.plies);
   if (settings.has("blank.layup")) stamping.blank.layup = settings.many("blank.layup");
   take(settings, "blank.nesting", stamping.blank.nesting);
+  stamping.blank.symmetry = symmetry_of(settings);
   take(settings, "tools.punch.radius", stamping.punch.radius);
   take(settings, "tools.die.opening_radius", stamping.die.opening_radius);
   take(settings, "tools.die.fillet", stamping.die.fillet);

@@ -17,6 +17,15 @@ namespace {
 
 constexpr double degrees = 180.0 / std::numbers::pi;
 
+// What of a symmetric part was computed, as a sentence behind another; nothing for all of it.
+std::string piece_in_words(macroscale::Symmetry symmetry) {
+  if (symmetry == macroscale::Symmetry::none) return "";
+  return fmt::format(
+      " One {} of it is computed and shown, on its planes of symmetry; forces, energies and heat are those "
+      "of the whole.",
+      symmetry == macroscale::Symmetry::quarter ? "quarter" : "half");
+}
+
 std::string description_of(const Case& a_case) {
   if (a_case.voxels) return "The stiffness of one cell of voxels.";
   if (!a_case.stamping)
@@ -26,9 +35,9 @@ std::string description_of(const Case& a_case) {
                                 ? "by the punch of " + s.punch.file->source.file.filename().string()
                                 : fmt::format("into a hemisphere of {:.0f} mm radius", 1e3 * s.punch.radius);
   const std::string plies = s.blank.plies > 1 ? fmt::format("{} plies of ", s.blank.plies) : "";
-  return fmt::format("A {} blank of {}{} weave stamped {:.0f} mm deep {} in {:.2f} s.",
+  return fmt::format("A {} blank of {}{} weave stamped {:.0f} mm deep {} in {:.2f} s.{}",
                      blank_in_words(s.blank), plies, a_case.cell->weave.pattern, 1e3 * s.process.stroke,
-                     punch, s.process.time / s.process.speed_scale);
+                     punch, s.process.time / s.process.speed_scale, piece_in_words(s.blank.symmetry));
 }
 
 std::vector<Condition> conditions_of(const Case& a_case) {

@@ -116,6 +116,10 @@ std::vector<Key> blank_keys() {
       {.path = "blank.nesting", .type = KeyType::quantity, .unit = "mm", .presence = defaulted, .default_text = "0 mm",
        .range = "[0 mm, 10 mm]", .stage = stamping,
        .help = "How much nearer than a thickness two plies lie before they press each other; `heddle weave` with `cell.plies: 2` says what a shift gives."},
+      {.path = "blank.symmetry", .type = KeyType::choice, .presence = defaulted, .default_text = "none",
+       .choices = {"none", "half_x", "half_y", "quarter"}, .stage = stamping,
+       .help = "Piece of a symmetric part that is computed: the half at x >= 0, at y >= 0, or the quarter of both. "
+               "Forces and energies are those of the whole, frames show the piece."},
       {.path = "blank.grid_error", .type = KeyType::choice, .presence = defaulted, .default_text = "on",
        .choices = {"on", "off"}, .stage = Stage::grid_error,
        .help = "on: the case is run once more on twice the spacing, for the error that the grid leaves in force, "

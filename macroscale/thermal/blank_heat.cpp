@@ -188,6 +188,8 @@ HeatRow heat_row(const Scene& scene, const BlankHeat& heat, double time) {
   }
   for (double* mean : {&row.mean_temperature, &row.crystallised, &row.frozen_faces, &row.frozen_through})
     *mean /= area;
+  const double all = images(scene.blank.symmetry);
+  for (double* sum : {&row.through_bottom, &row.through_top, &row.of_friction, &change}) *sum *= all;
   row.residual = change - row.through_bottom - row.through_top - row.of_friction;
   return row;
 }
