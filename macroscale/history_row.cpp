@@ -39,6 +39,7 @@ void add_to_history(HistoryRow& row, const StepAccount& account, const Scene& sc
   if (l.friction.size() > scene.tools.size()) row.friction_plies += l.friction.back();
   row.dissipation_shear_rate += l.shear_rate;
   row.dissipation_shear_hysteresis += l.shear_hysteresis;
+  row.dissipation_tow_rate += l.tow_rate;
   row.dissipation_artefact += l.artefact;
   row.dissipation_numerical += l.numerical;
   row.ledger_residual = ledger_residual(row);
