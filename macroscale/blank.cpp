@@ -440,6 +440,27 @@ void renumber(Blank& ply, int nodes, int quads) {
 
 }  // namespace
 
+Blank turned(Blank blank, double angle) {
+  if (angle == 0.0) return blank;
+  const std::array<double, 2> way = direction_of(angle);
+  const double c = way[0], s = way[1];
+  const auto turn = [c, s](const Vector2d& x) {
+    return Vector2d(c * x.x() - s * x.y(), s * x.x() + c * x.y());
+  };
+  const auto turn_ply = [&](Ply& ply) {
+    ply.warp = {c * ply.warp[0] - s * ply.warp[1], s * ply.warp[0] + c * ply.warp[1]};
+    ply.outline = turned(ply.outline, c, s);
+    for (EdgePoint& edge : ply.edge) {
+      edge.reference = turn(edge.reference);
+      edge.inward = turn(edge.inward);
+    }
+  };
+  turn_ply(blank);
+  for (Ply& ply : blank.above) turn_ply(ply);
+  for (Eigen::Vector3d& x : blank.reference) x.head<2>() = turn(x.head<2>());
+  return blank;
+}
+
 Blank stacked(std::vector<Blank> plies) {
   Blank all = std::move(plies.at(0));
   for (std::size_t k = 1; k < plies.size(); ++k) {

@@ -136,6 +136,9 @@ Blank make_blank(const Outline& outline, double spacing, double orientation, dou
 /// cut.
 Blank make_blank(std::array<double, 2> size, double spacing, double orientation = 0.0, double z = 0.0);
 
+/// The same blank, outline and tows, turned about the punch's axis by an angle [rad]; 0 changes no bit.
+Blank turned(Blank blank, double angle);
+
 /// Plies on one another as one blank, bottom first. @param plies  at least one, each of one ply
 Blank stacked(std::vector<Blank> plies);
 

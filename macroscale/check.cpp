@@ -1,5 +1,6 @@
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 
 #include <fmt/format.h>
 
@@ -154,9 +155,10 @@ void check_shapes(Findings& f, const PunchSpec& punch, const DieSpec& die, const
 Problems check(const StampingSpec& spec) {
   Findings f;
   const auto& [blank, punch, die, binder, process, artefact, shear_rate, shear_friction, contact_pressure,
-               contact_sites, compaction_follows_shear, heat] = spec;
+               contact_sites, compaction_follows_shear, heat, effects] = spec;
   if (heat) f.add(thermal::check(*heat));
   f.add(check_press(spec));
+  f.add(check(effects));
   const double die_edge = die.opening_radius + die.fillet;
   double edge = 0.0;
   std::vector<std::string> edges{"tools.die.file", "tools.binder.file"};
@@ -217,6 +219,28 @@ Problems check(const StampingSpec& spec) {
            "fabric.shear_hysteresis.stiffness", fmt::format("{:g}", shear_friction.stiffness),
            "must be at least 1",
            "Below, a reversal would be softer than the loading before it; 2 is the default.");
+  f.demand(!(effects.tension_coupling.on() && shear_friction.on()),
+           "effects.tension_shear_coupling.amplitude.hysteresis"_rule,
+           "effects.tension_shear_coupling.amplitude",
+           fmt::format("{:g}", effects.tension_coupling.amplitude),
+           "cannot stand beside fabric.shear_hysteresis: one potential holds tension and what tows rub away "
+           "only if the latter does not depend on tension",
+           "Leave out one of the two.", {"fabric.shear_hysteresis.share"});
+  f.demand(process.cooling_rate >= 0.0 && std::isfinite(process.cooling_rate),
+           "effects.blank_cooling.rate.range"_rule, "effects.blank_cooling.rate",
+           fmt::format("{:g} 1/s", process.cooling_rate), "must be >= 0", "0 1/s is off.");
+  f.demand(!(process.cooling_rate > 0.0 && heat), "effects.blank_cooling.rate.thermal"_rule,
+           "effects.blank_cooling.rate", fmt::format("{:g} 1/s", process.cooling_rate),
+           "cannot stand beside `thermal`, which cools the blank by conduction",
+           "Leave out the effect, or leave out `thermal`.", {"thermal"});
+  f.demand(process.press.binder_force_error > -1.0 && std::isfinite(process.press.binder_force_error),
+           "effects.binder_force_level.error.range"_rule, "effects.binder_force_level.error",
+           fmt::format("{:g}", process.press.binder_force_error), "must be > -1",
+           "0 is off; 0.1 presses a tenth harder than process.binder_force.");
+  f.demand(std::abs(blank.turned) <= std::numbers::pi, "effects.initial_orientation.angle.range"_rule,
+           "effects.initial_orientation.angle",
+           fmt::format("{:g} deg", blank.turned * 180.0 / std::numbers::pi),
+           "must lie within -180 and 180 deg", "0 deg is off.");
   return f.take();
 }
 

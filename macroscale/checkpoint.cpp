@@ -16,7 +16,7 @@ namespace heddle::macroscale {
 namespace {
 
 // One name a member. A member added to HistoryRow must be added here too: the size tells.
-static_assert(sizeof(HistoryRow) == 33 * sizeof(double) + sizeof(std::optional<HeatRow>),
+static_assert(sizeof(HistoryRow) == 34 * sizeof(double) + sizeof(std::optional<HeatRow>),
               "HistoryRow has changed: name its new members here");
 template <class Row, class Visit>
 void each_number(Row& r, const Visit& visit) {
@@ -49,6 +49,7 @@ void each_number(Row& r, const Visit& visit) {
   visit("friction_plies", r.friction_plies);
   visit("dissipation_shear_rate", r.dissipation_shear_rate);
   visit("dissipation_shear_hysteresis", r.dissipation_shear_hysteresis);
+  visit("dissipation_tow_rate", r.dissipation_tow_rate);
   visit("dissipation_artefact", r.dissipation_artefact);
   visit("dissipation_numerical", r.dissipation_numerical);
   visit("ledger_residual", r.ledger_residual);
@@ -214,6 +215,7 @@ void write_heat(Hdf5Writer& file, const std::string& group, const BlankHeat& hea
   write_rows(file, group + "/heat_in", heat.field.heat_in);
   write_rows(file, group + "/film", heat.film);
   file.write(group + "/rate_factor", heat.rate_factor);
+  if (!heat.shear_factor.empty()) file.write(group + "/shear_factor", heat.shear_factor);
 }
 
 BlankHeat read_heat(const Hdf5Reader& file, const std::string& group) {
@@ -226,6 +228,7 @@ BlankHeat read_heat(const Hdf5Reader& file, const std::string& group) {
   heat.field.heat_in = read_rows<3>(file, group + "/heat_in");
   heat.film = read_rows<2>(file, group + "/film");
   heat.rate_factor = file.doubles(group + "/rate_factor");
+  if (file.has(group + "/shear_factor")) heat.shear_factor = file.doubles(group + "/shear_factor");
   const std::size_t nodes = heat.field.nodes(), all = nodes * heat.field.cells;
   if (heat.field.temperature.size() != all || heat.field.progress.size() != all ||
       heat.field.heat_in.size() != nodes || heat.film.size() != nodes)

@@ -1,7 +1,10 @@
 #pragma once
 
+#include <array>
+
 #include <Eigen/Core>
 
+#include "macroscale/fabric_effects.h"
 #include "macroscale/shear_friction.h"
 #include "mesoscale/fabric_properties.h"
 
@@ -15,7 +18,9 @@ namespace heddle::macroscale {
 /// the trellis shear angle, R = m_s/(n+1) |gdot|^(n+1) the rate term with gdot = (gamma - gamma_n)/dt.
 /// Evaluating at the corners (not at the centre) leaves no hourglass mode. See docs/theory/macroscale.md.
 /// Where a share f of the shear resistance is friction between the tows, Psi is (1 - f) Psi and the work done
-/// against that friction since the last step (macroscale/shear_friction.h).
+/// against that friction since the last step (macroscale/shear_friction.h). Three effects may add to it:
+/// locking to Psi, tension that stiffens Psi, and tows that resist the rate of their stretch
+/// (macroscale/fabric_effects.h).
 struct CornerLaw {
   const mesoscale::FabricProperties* fabric = nullptr;
   double area = 0.0;              ///< A/4 [m^2]
@@ -26,6 +31,11 @@ struct CornerLaw {
   double time_step = 0.0;         ///< dt [s]; 0 = no rate term
   ShearFriction friction;
   const ShearMemory* memory = nullptr;  ///< of this corner; null = no friction between tows
+  double shear_factor = 1.0;            ///< on the rate-free resistance of the table: its softening [-]
+  ShearLocking locking;
+  const Surface* coupling = nullptr;      ///< c g(e1, e2) [-]; null = tension does not stiffen shear
+  double tow_viscosity = 0.0;             ///< [N s/m]; 0 = none
+  std::array<double, 2> strain_before{};  ///< of warp and weft at the start; read where tow_viscosity > 0 [-]
 };
 
 /// The law of a trimmed cell: its area counts by the share inside the outline.
@@ -48,8 +58,8 @@ CornerPoint corner_point(const CornerLaw& law, const Eigen::Vector3d& a, const E
 
 /// Energies of one corner [J].
 struct CornerEnergy {
-  double tension = 0.0, shear = 0.0, rate = 0.0;
-  double total() const { return tension + shear + rate; }
+  double tension = 0.0, shear = 0.0, rate = 0.0, tow_rate = 0.0;
+  double total() const { return tension + shear + rate + tow_rate; }
 };
 
 CornerEnergy corner_energy(const CornerLaw& law, const CornerPoint& point);
@@ -59,8 +69,9 @@ CornerEnergy corner_energy(const CornerLaw& law, const Eigen::Vector3d& a, const
 /// Forces of one corner as dW/da, dW/db [N], by part (the ledger needs them apart).
 struct CornerGradient {
   Eigen::Vector3d tension_a, tension_b, shear_a, shear_b, rate_a, rate_b;
-  Eigen::Vector3d a() const { return tension_a + shear_a + rate_a; }
-  Eigen::Vector3d b() const { return tension_b + shear_b + rate_b; }
+  Eigen::Vector3d tow_rate_a{0, 0, 0}, tow_rate_b{0, 0, 0};
+  Eigen::Vector3d a() const { return tension_a + shear_a + rate_a + tow_rate_a; }
+  Eigen::Vector3d b() const { return tension_b + shear_b + rate_b + tow_rate_b; }
 };
 
 CornerGradient corner_gradient(const CornerLaw& law, const CornerPoint& point);

@@ -4,6 +4,8 @@
 #include <array>
 #include <cmath>
 
+#include <Eigen/Eigenvalues>
+
 namespace heddle::macroscale {
 
 namespace {
@@ -138,6 +140,13 @@ Matrix4d positive_part(const CornerRing& ring) {
   for (int k = 0; k < 4; ++k)
     if (t.diagonal[k] < 0.0) m -= t.diagonal[k] * t.vectors.col(k) * t.vectors.col(k).transpose();
   return m;
+}
+
+Matrix4d positive_part(const Matrix4d& m) {
+  const Eigen::SelfAdjointEigenSolver<Matrix4d> eigen(m);
+  if (eigen.eigenvalues()[0] >= 0.0) return m;
+  return eigen.eigenvectors() * eigen.eigenvalues().cwiseMax(0.0).asDiagonal() *
+         eigen.eigenvectors().transpose();
 }
 
 }  // namespace heddle::macroscale

@@ -32,4 +32,7 @@ Symmetric2 positive_part(Symmetric2 m);
 /// @source  QL: Bowdler, Martin, Reinsch & Wilkinson 1968 (tql2)
 Eigen::Matrix4d positive_part(const CornerRing& ring);
 
+/// The same of any symmetric matrix, by its eigenvalues: for an energy that couples lengths with the angle.
+Eigen::Matrix4d positive_part(const Eigen::Matrix4d& m);
+
 }  // namespace heddle::macroscale

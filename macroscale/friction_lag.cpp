@@ -18,10 +18,11 @@ namespace {
 using Eigen::Vector3d;
 using Eigen::VectorXd;
 
-friction::Context context_of(const Scene& scene, double pressure, double shear_angle) {
+friction::Context context_of(const Scene& scene, double fabric_temperature, double pressure,
+                             double shear_angle) {
   friction::Context context;
   context.pressure = pressure;
-  context.fabric_temperature = scene.blank_temperature;
+  context.fabric_temperature = fabric_temperature;
   context.tool_temperature = scene.tool_temperature;
   context.shear_angle = shear_angle;
   if (scene.contact_pressure == ContactPressure::real) {
@@ -61,8 +62,9 @@ void freeze_plies(const System& system, const StepData& step, const VectorXd& x,
     double shear = 0.0;
     for (std::size_t c = 0; c < 4; ++c)
       shear += 0.25 * corners[c].sign * step.start->corner_angle[4 * static_cast<std::size_t>(quad) + c];
-    point.context = context_of(scene, contact.pressure, shear);
-    point.context.tool_temperature = scene.blank_temperature;
+    const double temperature = scene.blank_temperature_at(step.start->time);
+    point.context = context_of(scene, temperature, contact.pressure, shear);
+    point.context.tool_temperature = temperature;
     point.context.time_step = step.dt;
     point.context.slip_angle =
         slip_angle(tow_directions(scene.blank, system.ply_points()[i], x), point.normal,
@@ -88,9 +90,8 @@ FrictionPoints freeze(const System& system, const StepData& step, const VectorXd
       point.load = contact.pressure * system.contact_area(step, i);
       // A distance interpolated from samples has a gradient of length about 1: slip needs a true projection.
       point.normal = d.normal.normalized();
-      point.context = context_of(scene, contact.pressure, shear_angle[i]);
-      point.context.fabric_temperature =
-          fabric_temperature(scene, step.start->heat, k, system.contact_points()[i]);
+      point.context = context_of(scene, fabric_temperature(scene, *step.start, k, system.contact_points()[i]),
+                                 contact.pressure, shear_angle[i]);
       point.context.tool_temperature = tool_temperature(scene, k);
       point.context.time_step = step.dt;
       point.context.slip_angle = slip_angle(tow_directions(scene.blank, scene.contact_sites, x, i),
@@ -167,8 +168,8 @@ FrictionPoints blend(const System& system, const StepData& step, const FrictionP
       point.normal = normal;
       const friction::Context last = point.context;
       const double angle = k < scene.tools.size() ? shear_angle[i] : last.shear_angle;
-      point.context = context_of(scene, point.load / system.area_in_row(step, static_cast<int>(k), i), angle);
-      point.context.fabric_temperature = last.fabric_temperature;
+      point.context = context_of(scene, last.fabric_temperature,
+                                 point.load / system.area_in_row(step, static_cast<int>(k), i), angle);
       point.context.tool_temperature = last.tool_temperature;
       point.context.time_step = last.time_step;
       point.context.slip_angle = last.slip_angle;

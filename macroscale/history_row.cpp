@@ -40,6 +40,7 @@ void add_to_history(HistoryRow& row, const StepAccount& account, const Scene& sc
   if (l.friction.size() > scene.tools.size()) row.friction_plies += all * l.friction.back();
   row.dissipation_shear_rate += all * l.shear_rate;
   row.dissipation_shear_hysteresis += all * l.shear_hysteresis;
+  row.dissipation_tow_rate += all * l.tow_rate;
   row.dissipation_artefact += all * l.artefact;
   row.dissipation_numerical += all * l.numerical;
   row.ledger_residual = ledger_residual(row);

@@ -18,7 +18,7 @@ struct Increment {
 
 struct CornerIncrements {
   Increment tow, shear;
-  double rate = 0.0;
+  double rate = 0.0, tow_rate = 0.0;
   double hysteresis = 0.0;
 };
 
@@ -31,10 +31,12 @@ CornerIncrements corner_increments(const System& system, const StepData& step, c
     const auto corners = corners_of(blank.quads[q]);
     CornerLaw here = trimmed(laws[blank.ply_of_quad(static_cast<int>(q))], blank.share[q]);
     here.rate_consistency *= system.rate_factor(step, q);
+    here.shear_factor = system.shear_factor(step, q);
     for (std::size_t k = 0; k < 4; ++k) {
       const Corner& c = corners[k];
       const double before = start.corner_angle[4 * q + k];
       here.memory = shear_memory(start, 4 * q + k);
+      if (here.tow_viscosity > 0.0) here.strain_before = system.strain_before(step, c, here);
       const Vector3d a0 = start.node(c.along_warp) - start.node(c.node),
                      b0 = start.node(c.along_weft) - start.node(c.node);
       const Vector3d a = end.node(c.along_warp) - end.node(c.node),
@@ -43,15 +45,16 @@ CornerIncrements corner_increments(const System& system, const StepData& step, c
       const CornerGradient g = corner_gradient(here, a, b, before);
       sum.tow.stored += e.tension - e0.tension;
       // The shear energy of a step holds what its tows rubbed away.
-      const double rubbed = here.memory
-                                ? here.area * dissipated_by_tows(here.friction, here.fabric->shear_stress,
+      const double rubbed = here.memory ? here.area * here.shear_factor *
+                                              dissipated_by_tows(here.friction, here.fabric->shear_stress,
                                                                  *here.memory, end.shear_memory[4 * q + k])
-                                : 0.0;
+                                        : 0.0;
       sum.hysteresis += rubbed;
       sum.shear.stored += e.shear - e0.shear - rubbed;
       sum.tow.work += g.tension_a.dot(a - a0) + g.tension_b.dot(b - b0);
       sum.shear.work += g.shear_a.dot(a - a0) + g.shear_b.dot(b - b0);
       sum.rate += g.rate_a.dot(a - a0) + g.rate_b.dot(b - b0);
+      sum.tow_rate += g.tow_rate_a.dot(a - a0) + g.tow_rate_b.dot(b - b0);
     }
   }
   return sum;
@@ -155,8 +158,8 @@ void account_plies(const System& system, const StepData& step, const State& end,
 }  // namespace
 
 double StepLedger::dissipated() const {
-  return std::accumulate(friction.begin(), friction.end(), 0.0) + shear_rate + shear_hysteresis + artefact +
-         numerical;
+  return std::accumulate(friction.begin(), friction.end(), 0.0) + shear_rate + shear_hysteresis + tow_rate +
+         artefact + numerical;
 }
 
 StepAccount account(const System& system, const StepData& step, const State& end) {
@@ -173,6 +176,7 @@ StepAccount account(const System& system, const StepData& step, const State& end
   ledger.shear = corner.shear.stored;
   ledger.shear_rate = corner.rate;
   ledger.shear_hysteresis = corner.hysteresis;
+  ledger.tow_rate = corner.tow_rate;
   ledger.bending = bending.stored;
   ledger.twist = twist.stored;
   ledger.numerical += corner.tow.work - corner.tow.stored + corner.shear.work - corner.shear.stored;

@@ -23,6 +23,7 @@ struct StepLedger {
   std::vector<double> friction;   ///< dissipated at each tool, and behind them between plies
   double shear_rate = 0.0;        ///< dissipated by rate-dependent shear: force times increment
   double shear_hysteresis = 0.0;  ///< dissipated between tows that turn at their crossovers
+  double tow_rate = 0.0;          ///< dissipated by tows that resist the rate of their stretch
   double artefact = 0.0;          ///< dissipated by the stabilisation switch
   double numerical = 0.0;  ///< of backward Euler: 1/2 |dv|^2_M and the second-order part of each stored term
   double pairing =

@@ -13,10 +13,11 @@ struct PressSpec {
   double compliance = 0.0;               ///< of the frame: the punch stays behind its drive by this [m/N]
   double force_limit = 0.0;              ///< the punch yields at this force; 0 = never [N]
   std::array<double, 2> punch_offset{};  ///< of the punch's axis from that of die and binder [m]
-  double binder_tilt = 0.0;       ///< of the binder, held, about a level axis through the punch's [rad]
-  double binder_tilt_axis = 0.0;  ///< direction of that axis against x [rad]
-  double dwell = 0.0;             ///< time that the tools stand still after the stroke [s]
-  bool release = false;           ///< then punch and binder go up and the blank springs back
+  double binder_tilt = 0.0;         ///< of the binder, held, about a level axis through the punch's [rad]
+  double binder_tilt_axis = 0.0;    ///< direction of that axis against x [rad]
+  double binder_force_error = 0.0;  ///< of the force on the binder, over what was asked for [-]
+  double dwell = 0.0;               ///< time that the tools stand still after the stroke [s]
+  bool release = false;             ///< then punch and binder go up and the blank springs back
 };
 
 /// Rows of history after the stroke.

@@ -227,7 +227,7 @@ double ledger_residual(const HistoryRow& r) {
                         r.energy_compaction + r.energy_kinetic + r.energy_press;
   const double dissipated = r.friction_punch + r.friction_die + r.friction_binder + r.dissipation_shear_rate +
                             r.dissipation_shear_hysteresis + r.dissipation_artefact +
-                            r.dissipation_numerical + r.friction_plies;
+                            r.dissipation_numerical + r.friction_plies + r.dissipation_tow_rate;
   return work - stored - dissipated;
 }
 

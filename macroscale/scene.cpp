@@ -1,8 +1,15 @@
 #include "macroscale/scene.h"
 
+#include <cmath>
+
 #include "macroscale/contact_points.h"
 
 namespace heddle::macroscale {
+
+double Scene::blank_temperature_at(double time) const {
+  if (cooling_rate == 0.0) return blank_temperature;
+  return tool_temperature + (blank_temperature - tool_temperature) * std::exp(-cooling_rate * time);
+}
 
 State initial_state(const Scene& scene) {
   State state;

@@ -9,6 +9,7 @@
 #include "friction/model.h"
 #include "macroscale/blank.h"
 #include "macroscale/contact.h"
+#include "macroscale/fabric_effects.h"
 #include "macroscale/ply_contact.h"
 #include "macroscale/shear_friction.h"
 #include "macroscale/stamping.h"
@@ -32,11 +33,14 @@ struct Scene {
 
   double blank_temperature = 453.15;  ///< [K]
   double tool_temperature = 358.15;   ///< [K]
+  double cooling_rate = 0.0;          ///< of the blank towards its tools [1/s]; 0 = one temperature a run
   double slip_smoothing = 1e-5;       ///< eps_v [m/s]
   double mass_scaling = 1.0;          ///< artefact; 1 = true mass
   double stabilisation = 0.0;         ///< artefact [N s/m^3]
   double shear_rate = 1.0;            ///< factor on the rate-dependent shear resistance; 0 is off
   ShearFriction shear_friction;       ///< between tows; off by default
+  FabricEffects effects;              ///< of what the fabric's numbers alone do not hold; off by default
+  Surface coupling;                   ///< coupling_of(effects.tension_coupling, ...); empty: off
   ContactPressure contact_pressure = ContactPressure::real;
   ContactSites contact_sites = ContactSites::nodes;
   bool compaction_follows_shear = false;  ///< else the table of gamma = 0 on initial areas
@@ -50,6 +54,9 @@ struct Scene {
   /// Distance of the middles of two plies that do not press each other [m].
   double ply_rest() const { return fabric->thickness - nesting; }
   int unknowns() const { return 3 * blank.nodes() + loaded_tools(); }
+  /// Temperature of a blank without `heat`, a time after the punch has touched [K]:
+  /// T_tool + (T_blank - T_tool) exp(-rate t).
+  double blank_temperature_at(double time) const;
 };
 
 /// Where everything is at one instant. Unknowns: 3 a node (x, y, z), then one a loaded (z) or sprung tool.

@@ -41,15 +41,11 @@ double smoothing_of_dwell(const ProcessSpec& process, double of_stroke) {
 enum class Ending { done, failed, stopped };
 
 std::vector<std::pair<std::string, double>> terms_of(const PotentialTerms& p) {
-  return {{"inertia", p.inertia},
-          {"tow", p.tow},
-          {"shear", p.shear},
-          {"shear_rate", p.rate},
-          {"bending", p.bending},
-          {"twist", p.twist},
-          {"compaction", p.compaction + p.compaction_plies},
-          {"loads", p.loads},
-          {"stabilisation", p.stabilisation}};
+  return {{"inertia", p.inertia},   {"tow", p.tow},
+          {"shear", p.shear},       {"shear_rate", p.rate},
+          {"tow_rate", p.tow_rate}, {"bending", p.bending},
+          {"twist", p.twist},       {"compaction", p.compaction + p.compaction_plies},
+          {"loads", p.loads},       {"stabilisation", p.stabilisation}};
 }
 
 // Residuals and energies of the last iterate, sorted by what is a number and what is not.
@@ -134,8 +130,8 @@ class Run {
     options_.stop = control.stop;
     // A nodal residual is small beside the binder's share of a node as well: under 5 N a millinewton is not.
     options_.force_tolerance =
-        std::min(options_.force_tolerance,
-                 1e-2 * spec.process.binder_force / (images(spec.blank.symmetry) * scene_.blank.nodes()));
+        std::min(options_.force_tolerance, 1e-2 * spec.process.applied_binder_force() /
+                                               (images(spec.blank.symmetry) * scene_.blank.nodes()));
     if (spec.process.press.gravity)
       options_.force_tolerance = std::min(options_.force_tolerance, 1e-2 * mean_weight(scene_));
     now_.state = initial_state(scene_);
@@ -410,11 +406,13 @@ StampingResult run_stamping(const StampingSpec& spec, const mesoscale::FabricPro
   return run_stamping(spec, fabric, friction, StampingControl{.observe = observe});
 }
 
-StampingResult run_stamping(const StampingSpec& spec, const mesoscale::FabricProperties& fabric,
+StampingResult run_stamping(const StampingSpec& spec, const mesoscale::FabricProperties& handed_over,
                             const friction::Model& friction, const StampingControl& control) {
   Problems problems = check(spec);
-  const Problems of_fabric = mesoscale::check(fabric);
+  const Problems of_fabric = mesoscale::check(handed_over);
   problems.insert(problems.end(), of_fabric.begin(), of_fabric.end());
+  if (!problems.empty()) throw InputError(std::move(problems));
+  const mesoscale::FabricProperties fabric = with_effects(handed_over, spec.effects);
   if (spec.thermal) {
     const Problems of_heat = thermal::check_films(*spec.thermal, fabric.areal_density);
     problems.insert(problems.end(), of_heat.begin(), of_heat.end());

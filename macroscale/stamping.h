@@ -13,6 +13,7 @@
 #include "core/problem.h"
 #include "friction/model.h"
 #include "macroscale/cell_piece.h"
+#include "macroscale/fabric_effects.h"
 #include "macroscale/outline.h"
 #include "macroscale/press.h"
 #include "macroscale/shear_friction.h"
@@ -37,7 +38,8 @@ struct BlankSpec {
   Outline polygon;                         ///< with holes of any shape [m]
   std::vector<RoundHole> holes;            ///< cut out of any shape
   double orientation = 0.0;                ///< warp against x [rad]
-  double spacing = 4.5e-3;                 ///< upper bound of the node spacing [m]
+  double turned = 0.0;      ///< how far the whole blank, outline and tows, was laid down turned [rad]
+  double spacing = 4.5e-3;  ///< upper bound of the node spacing [m]
   int plies = 1;
   std::vector<double>
       layup;             ///< warp of each ply against `orientation`, bottom first; empty: all alike [rad]
@@ -101,11 +103,15 @@ struct ProcessSpec {
       0.0;  ///< the punch stops linearly over this last part [s]; 0.01 in the paper (section 3.2.2)
   double speed_scale = 1.0;     ///< 0.5 = half speed [-]
   int steps = 100;              ///< equal in stroke
-  double binder_force = 650.0;  ///< [N]
+  double binder_force = 650.0;  ///< as asked for [N]
   double hold = 0.0;  ///< longest time that the tools stay closed after the stroke, until no melt is left [s]
   double tool_temperature = 358.15;   ///< [K]
   double blank_temperature = 453.15;  ///< [K]
+  double cooling_rate = 0.0;  ///< of the blank towards the tools' temperature, without `thermal` [1/s]
   PressSpec press;
+
+  /// What the press truly puts on the binder [N].
+  double applied_binder_force() const { return binder_force * (1.0 + press.binder_force_error); }
 };
 
 /// Non-physical helps. Off here; a report that used one says so.
@@ -134,6 +140,7 @@ struct StampingSpec {
   bool compaction_follows_shear =
       false;  ///< p(d, gamma) on current areas; off: the flat fabric's, initial areas
   std::optional<thermal::ThermalSpec> thermal;  ///< absent: one temperature a run
+  FabricEffects effects;                        ///< all off by default
 };
 
 /// One accepted step: a row of history.csv. Energies are cumulative since the punch touched [J].
@@ -156,6 +163,7 @@ struct HistoryRow {
   double friction_punch = 0.0, friction_die = 0.0, friction_binder = 0.0;
   double friction_plies = 0.0;                ///< between plies
   double dissipation_shear_hysteresis = 0.0;  ///< friction between tows
+  double dissipation_tow_rate = 0.0;          ///< tows that resist the rate of their stretch
   double dissipation_shear_rate = 0.0, dissipation_artefact = 0.0, dissipation_numerical = 0.0;
   double ledger_residual = 0.0;        ///< what the columns above leave over [J]
   double force_balance = 0.0;          ///< |sum F - sum m a| [N]

@@ -51,7 +51,7 @@ std::vector<Tool> binders_of(const StampingSpec& spec, const Shape& whole, doubl
   std::vector<Tool> tools;
   for (int k = 0; k < binder.sectors; ++k) {
     Tool tool{Role::binder,        binder.sectors > 1 ? sector(spec, k, face) : raised(whole, face),
-              Motion::loaded,      share * spec.process.binder_force,
+              Motion::loaded,      share * spec.process.applied_binder_force(),
               share * binder.mass, share * weight};
     if (binder.control == BinderControl::gap) tool = {Role::binder, tool.shape, Motion::fixed};
     if (tool.motion == Motion::loaded) tool.stiffness = share * binder.stiffness;
@@ -65,7 +65,7 @@ std::vector<Tool> binders_of(const StampingSpec& spec, const Shape& whole, doubl
 double closed_approach(const StampingSpec& spec, const mesoscale::FabricProperties& fabric, double weight) {
   if (spec.binder.control == BinderControl::gap)
     return (stack_thickness(spec.blank, fabric.thickness) - spec.binder.gap) / (2.0 * spec.blank.plies);
-  const double pressure = (spec.process.binder_force + weight) / binder_area(spec);
+  const double pressure = (spec.process.applied_binder_force() + weight) / binder_area(spec);
   return approach_at(fabric.compaction.curves().front(), pressure);
 }
 
@@ -78,16 +78,17 @@ double binder_weight(const StampingSpec& spec) {
 Blank stamping_blank(const StampingSpec& spec, const mesoscale::FabricProperties& fabric) {
   const BlankSpec& blank = spec.blank;
   if (blank.plies == 1)
-    return make_blank(outline_of(blank), blank.spacing, blank.orientation, 0.0, blank.symmetry);
+    return turned(make_blank(outline_of(blank), blank.spacing, blank.orientation, 0.0, blank.symmetry),
+                  blank.turned);
   const double apart =
       fabric.thickness - blank.nesting - 2.0 * closed_approach(spec, fabric, binder_weight(spec));
   std::vector<Blank> plies;
   for (int k = 0; k < blank.plies; ++k) {
-    const double turned = blank.layup.empty() ? 0.0 : blank.layup[static_cast<std::size_t>(k)];
-    plies.push_back(make_blank(outline_of(blank), blank.spacing, blank.orientation + turned,
+    const double of_ply = blank.layup.empty() ? 0.0 : blank.layup[static_cast<std::size_t>(k)];
+    plies.push_back(make_blank(outline_of(blank), blank.spacing, blank.orientation + of_ply,
                                (k - 0.5 * (blank.plies - 1)) * apart));
   }
-  return stacked(std::move(plies));
+  return turned(stacked(std::move(plies)), blank.turned);
 }
 
 // Die and binder stand where they have closed on a flat blank, so that its middle is at z = 0 and the punch
@@ -120,6 +121,7 @@ Scene stamping_scene(const StampingSpec& spec, const mesoscale::FabricProperties
   if (press.gravity) scene.load = weight_of_fabric(scene);
   scene.blank_temperature = spec.process.blank_temperature;
   scene.tool_temperature = spec.process.tool_temperature;
+  scene.cooling_rate = spec.process.cooling_rate;
   // Smoothing follows the punch speed, so a rate-free law stays rate-free; creep while sticking is below
   // 2e-4 of the stroke.
   scene.slip_smoothing = std::max(2e-4 * mean_speed(spec.process), 1e-6);
@@ -127,6 +129,8 @@ Scene stamping_scene(const StampingSpec& spec, const mesoscale::FabricProperties
   scene.stabilisation = spec.artefact.stabilisation;
   scene.shear_rate = spec.shear_rate;
   scene.shear_friction = spec.shear_friction;
+  scene.effects = spec.effects;
+  scene.coupling = coupling_of(spec.effects.tension_coupling, fabric.tension_energy);
   scene.contact_pressure = spec.contact_pressure;
   scene.contact_sites = spec.contact_sites;
   scene.compaction_follows_shear = spec.compaction_follows_shear;

@@ -55,6 +55,11 @@ Vector3d second_difference(const VectorXd& x, const MirroredTriple& t) {
   return difference;
 }
 
+// Held over the step, as the temperatures of `heat` are.
+double temperature_before(const Scene& scene, const StepData& step) {
+  return scene.cooling_rate == 0.0 ? scene.blank_temperature : scene.blank_temperature_at(step.start->time);
+}
+
 Vector3d twist_of(const VectorXd& x, const std::array<int, 4>& q) {
   return node_of(x, q[0]) - node_of(x, q[1]) + node_of(x, q[2]) - node_of(x, q[3]);
 }
@@ -145,11 +150,29 @@ CornerLaw System::corner_law(const StepData& step, int ply) const {
   law.length_weft = grid.spacing[1];
   if (scene_.shear_rate > 0.0)
     law.rate_consistency =
-        scene_.shear_rate * scene_.fabric->shear_rate.consistency_at(scene_.blank_temperature);
+        scene_.shear_rate * scene_.fabric->shear_rate.consistency_at(temperature_before(scene_, step));
   law.rate_index = scene_.fabric->shear_rate.index;
   law.time_step = step.dt;
   law.friction = scene_.shear_friction;
+  law.locking = scene_.effects.shear_locking;
+  law.coupling = scene_.coupling.empty() ? nullptr : &scene_.coupling;
+  law.tow_viscosity = scene_.effects.tow_viscosity;
   return law;
+}
+
+double System::shear_factor(const StepData& step, std::size_t quad) const {
+  const ShearSoftening& softening = scene_.effects.softening;
+  if (!softening.on()) return 1.0;
+  if (!step.start->heat.empty()) return step.start->heat.shear_factor[quad];
+  return softening.factor_at(temperature_before(scene_, step));
+}
+
+std::array<double, 2> System::strain_before(const StepData& step, const Corner& corner,
+                                            const CornerLaw& law) const {
+  const VectorXd& x = step.start->x;
+  const Vector3d origin = node_of(x, corner.node);
+  return {(node_of(x, corner.along_warp) - origin).norm() / law.length_warp - 1.0,
+          (node_of(x, corner.along_weft) - origin).norm() / law.length_weft - 1.0};
 }
 
 std::vector<CornerLaw> System::corner_laws(const StepData& step) const {
@@ -167,6 +190,7 @@ void System::evaluate(const StepData& step, const VectorXd& x, Position& at) con
     const auto corners = corners_of(blank.quads[q]);
     CornerLaw here = laws[blank.ply_of_quad(q)];
     here.rate_consistency *= rate_factor(step, q);
+    here.shear_factor = shear_factor(step, q);
     for (int k = 0; k < 4; ++k) {
       const Corner& c = corners[k];
       const Vector3d origin = node_of(x, c.node);
@@ -208,18 +232,21 @@ PotentialTerms System::potential(const StepData& step, const Position& at) const
   const std::vector<CornerLaw> laws = corner_laws(step);
   const int quads = static_cast<int>(blank.quads.size());
   struct Sums {
-    double tow = 0.0, shear = 0.0, rate = 0.0;
+    double tow = 0.0, shear = 0.0, rate = 0.0, tow_rate = 0.0;
   };
   const Sums sums = tbb::parallel_deterministic_reduce(
       tbb::blocked_range<int>(0, quads, 256), Sums{},
       [&](const tbb::blocked_range<int>& range, Sums s) {
         for (int q = range.begin(); q != range.end(); ++q) {
-          const CornerLaw here = trimmed(laws[blank.ply_of_quad(q)], blank.share[q]);
+          CornerLaw here = trimmed(laws[blank.ply_of_quad(q)], blank.share[q]);
+          const auto corners = corners_of(blank.quads[q]);
           for (int k = 0; k < 4; ++k) {
+            if (here.tow_viscosity > 0.0) here.strain_before = strain_before(step, corners[k], here);
             const CornerEnergy w = corner_energy(here, at.corners[4 * q + k]);
             s.tow += w.tension;
             s.shear += w.shear;
             s.rate += w.rate;
+            s.tow_rate += w.tow_rate;
           }
         }
         return s;
@@ -228,11 +255,13 @@ PotentialTerms System::potential(const StepData& step, const Position& at) const
         a.tow += b.tow;
         a.shear += b.shear;
         a.rate += b.rate;
+        a.tow_rate += b.tow_rate;
         return a;
       });
   e.tow = sums.tow;
   e.shear = sums.shear;
   e.rate = sums.rate;
+  e.tow_rate = sums.tow_rate;
 
   e.bending = ordered_sum(static_cast<int>(blank.triples.size()), [&](int t) {
     return 0.5 * bending_stiffness(blank.triples[t]) * second_difference(x, blank.triples[t]).squaredNorm();
@@ -293,9 +322,10 @@ VectorXd System::full_gradient(const StepData& step, const Position& at) const {
     for_each(static_cast<int>(colour.size()), [&](int index) {
       const int q = colour[index];
       const auto corners = corners_of(blank.quads[q]);
-      const CornerLaw here = trimmed(laws[blank.ply_of_quad(q)], blank.share[q]);
+      CornerLaw here = trimmed(laws[blank.ply_of_quad(q)], blank.share[q]);
       for (int k = 0; k < 4; ++k) {
         const Corner& c = corners[k];
+        if (here.tow_viscosity > 0.0) here.strain_before = strain_before(step, c, here);
         const CornerGradient w = corner_gradient(here, at.corners[4 * q + k]);
         const Vector3d a = w.a(), b = w.b();
         g.segment<3>(3 * c.along_warp) += a;

@@ -65,11 +65,12 @@ struct SearchRoom {
 /// Energies of the incremental potential at one position [J]; friction only as a difference (see below).
 struct PotentialTerms {
   double inertia = 0.0, tow = 0.0, shear = 0.0, rate = 0.0, bending = 0.0, twist = 0.0, compaction = 0.0;
+  double tow_rate = 0.0;
   double loads = 0.0, stabilisation = 0.0;
   double compaction_plies = 0.0;  ///< between plies
   double total() const {
     return inertia + tow + shear + rate + bending + twist + compaction + loads + stabilisation +
-           compaction_plies;
+           compaction_plies + tow_rate;
   }
 };
 
@@ -152,6 +153,11 @@ class System {
   double rate_factor(const StepData& step, std::size_t quad) const {
     return step.start->heat.empty() ? 1.0 : step.start->heat.rate_factor[quad];
   }
+  /// Factor on the rate-free shear resistance of the table in one cell, for the temperature at the start of
+  /// the step: 1 unless shear softens.
+  double shear_factor(const StepData& step, std::size_t quad) const;
+  /// Strains of warp and weft of one corner at the start of the step [-].
+  std::array<double, 2> strain_before(const StepData& step, const Corner& corner, const CornerLaw& law) const;
 
   const Curve& compaction() const { return compaction_; }
   /// The same for a point at x of the fabric, not sheared, against tool k displaced by z.

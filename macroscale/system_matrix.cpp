@@ -170,8 +170,10 @@ void System::add_corners(const StepData& step, const Position& at, Filter filter
   for (const auto& colour : colours_)
     for_each(static_cast<int>(colour.size()), [&](int index) {
       const int q = colour[index];
-      const CornerLaw here = trimmed(laws[scene_.blank.ply_of_quad(q)], scene_.blank.share[q]);
+      CornerLaw here = trimmed(laws[scene_.blank.ply_of_quad(q)], scene_.blank.share[q]);
+      const auto corners = corners_of(scene_.blank.quads[q]);
       for (int k = 0; k < 4; ++k) {
+        if (here.tow_viscosity > 0.0) here.strain_before = strain_before(step, corners[k], here);
         const CornerHessian h = corner_hessian(here, at.corners[4 * q + k], filter);
         const std::array<Matrix3d, 6> part = {h.aa + h.ab + h.ab.transpose() + h.bb,
                                               h.aa,

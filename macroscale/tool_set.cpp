@@ -231,7 +231,8 @@ Shape raised(Shape shape, double z) {
 }
 
 double binder_area(const StampingSpec& spec) {
-  const Blank blank = make_blank(outline_of(spec.blank), spec.blank.spacing, spec.blank.orientation);
+  const Blank blank = turned(make_blank(outline_of(spec.blank), spec.blank.spacing, spec.blank.orientation),
+                             spec.blank.turned);
   const Shape binder = touching(spec, Role::binder);
   const auto* ring = std::get_if<RingShape>(&binder);
   const double below = 1e-3;

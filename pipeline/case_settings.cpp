@@ -6,6 +6,7 @@
 #include "core/units.h"
 #include "macroscale/outline_file.h"
 #include "macroscale/punch_table.h"
+#include "pipeline/forming_effect_keys.h"
 #include "pipeline/friction_keys.h"
 #include "pipeline/solid_keys.h"
 #include "pipeline/thermal_keys.h"
@@ -361,6 +362,7 @@ macroscale::StampingSpec stamping_of(const Settings& settings, const std::filesy
   if (settings.is("contact.points", "gauss")) stamping.contact_sites = macroscale::ContactSites::gauss;
   stamping.compaction_follows_shear = settings.is("contact.compaction", "sheared");
   stamping.thermal = thermal_of(settings);
+  take_forming_effects(settings, stamping);
   return stamping;
 }
 

@@ -127,7 +127,8 @@ void run_stamping(const Case& a_case, RunFolder& folder, const Cache& cache, Fin
   findings.stamping = run_stamping_stage(*a_case.stamping, findings.cell->fabric, findings.friction->model,
                                          folder, cache, std::move(options));
   const macroscale::BlankState& blank = findings.stamping->final_state;
-  findings.indicators = macroscale::largest(macroscale::indicators(blank, findings.cell->fabric), blank);
+  const auto acting = macroscale::with_effects(findings.cell->fabric, a_case.stamping->effects);
+  findings.indicators = macroscale::largest(macroscale::indicators(blank, acting), blank);
   if (findings.indicators.empty()) return;  // the binder never closed
   folder.write("macroscale/indicators.csv", indicators_csv(findings.indicators));
   folder.log(indicator_line(findings.indicators));

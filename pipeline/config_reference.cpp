@@ -3,6 +3,8 @@
 #include <fmt/format.h>
 
 #include <set>
+#include <utility>
+#include <vector>
 
 #include "core/units.h"
 #include "pipeline/config_schema.h"
@@ -92,11 +94,13 @@ std::string row(const Key& key) {
 std::string config_reference() {
   std::string text = introduction;
   std::string block;
-  std::string later;
+  std::vector<std::pair<std::string, std::string>> later;  // why, and the keys
   std::set<std::string> families;
   for (const Key& key : schema()) {
     if (key.presence == Presence::later) {
-      later += (later.empty() ? "`" : ", `") + key.path + "`";
+      if (later.empty() || later.back().first != key.help) later.emplace_back(key.help, "");
+      std::string& listed = later.back().second;
+      listed += (listed.empty() ? "`" : ", `") + key.path + "`";
       continue;
     }
     const bool alone = key.path.find('.') == std::string::npos;
@@ -107,7 +111,9 @@ std::string config_reference() {
     }
     if (key.family.empty() || families.insert(key.family).second) text += row(key);
   }
-  return text + "\n## Known, not read by this version\n\n" + later + "\n";
+  text += "\n## Known, not read by this version\n";
+  for (const auto& [why, listed] : later) text += fmt::format("\n{} {}\n", why, listed);
+  return text;
 }
 
 }  // namespace heddle::pipeline

@@ -10,6 +10,7 @@
 #include "core/units.h"
 #include "pipeline/calibrate_keys.h"
 #include "pipeline/discover_keys.h"
+#include "pipeline/forming_effect_keys.h"
 #include "pipeline/friction_keys.h"
 #include "pipeline/key_table.h"
 #include "pipeline/solid_keys.h"
@@ -329,13 +330,15 @@ std::vector<Key> effect_keys() {
                   .used_when = "effects.shear_rate fabric.shear_rate=on",
                   .help = "On the rate-dependent shear resistance that the weave and its melt give; 1 changes nothing, 0 is off."});
   const std::vector<std::string> to_come{
-      "shear_locking",
-      "tension_shear_coupling", "bending", "tow_rate_stiffening", "inter_tow_slip", "crimp_straightening",
-      "shear_thermal_softening", "blank_cooling", "inertia", "binder_force_level", "initial_orientation", "normal_force_relaxation", "load_cell_offset",
+      "normal_force_relaxation", "load_cell_offset",
       "gain_drift", "drive_backlash", "nonuniform_pressure", "mislabelled_condition", "discretisation"};
   append(keys, friction_effect_keys());
   append(keys, press_effect_keys());
+  append(keys, forming_effect_keys());
   for (const std::string& id : to_come) keys.push_back(later("effects." + id, "Effect of a later version."));
+  keys.push_back(later("effects.inter_tow_slip",
+                       "Tows share the nodes of the sheet, which bind them at their crossovers: none can slide over another; "
+                       "`gap_opening_warp_weft_mm` in the `.vtu` files shows where they would be pulled apart."));
   return keys;
 }
 

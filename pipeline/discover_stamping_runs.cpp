@@ -6,6 +6,7 @@
 #include <array>
 #include <cmath>
 #include <limits>
+#include <optional>
 
 #include "core/units.h"
 #include "friction/calibration/model_numbers.h"
@@ -97,18 +98,44 @@ std::vector<Candidate> choices_of(const EffectFile& effect) {
   return choices;
 }
 
+/// The amplitude of an effect of forming in a case; none for the name of another one.
+std::optional<double> forming_number(const std::string& id, const macroscale::StampingSpec& stamping) {
+  const macroscale::FabricEffects& effects = stamping.effects;
+  const std::map<std::string, double> amplitudes{
+      {"shear_locking", effects.shear_locking.amplitude},
+      {"tension_shear_coupling", effects.tension_coupling.amplitude},
+      {"bending", effects.bending},
+      {"tow_rate_stiffening", effects.tow_viscosity},
+      {"crimp_straightening", effects.crimp_stretch},
+      {"shear_thermal_softening", effects.softening.rate},
+      {"blank_cooling", stamping.process.cooling_rate},
+      {"inertia", effects.inertia},
+      {"binder_force_level", stamping.process.press.binder_force_error}};
+  const auto found = amplitudes.find(id);
+  return found == amplitudes.end() ? std::nullopt : std::optional(found->second);
+}
+
 /// Why an effect beside friction cannot be tried in this case; "" where it can.
 std::string refusal_of(const EffectFile& effect, const Case& a_case) {
   if (effect.id == "shear_rate")
     return a_case.stamping->shear_rate > 0.0 ? "is in the case already (fabric.shear_rate)" : "";
-  if (effect.id == "inertia")
-    return a_case.stamping->artefact.mass_scaling != 1.0 ? "is in the case already (artefact.mass_scaling)"
-                                                         : "";
+  if (effect.id == "inertia" && a_case.stamping->artefact.mass_scaling != 1.0)
+    return "is in the case already (artefact.mass_scaling)";
   const macroscale::PressSpec& press = a_case.stamping->process.press;
   if (effect.id == "press_compliance")
     return press.compliance > 0.0 ? "is in the case already (effects.press_compliance)" : "";
   if (effect.id == "punch_misalignment" || effect.id == "binder_tilt")
     return "moves the punch force in second order alone: its sign is told by the draw-in of opposite sides";
+  if (effect.id == "initial_orientation")
+    return "moves the punch force in second order alone: its sign is told by where the edge has gone";
+  if (effect.id == "blank_cooling" && a_case.stamping->thermal)
+    return "has no place beside `thermal`, which cools the blank by conduction";
+  if (effect.id == "tension_shear_coupling" && a_case.shear_friction.on())
+    return "has no place beside fabric.shear_hysteresis";
+  if (effect.id == "binder_force_level" && a_case.stamping->binder.control == macroscale::BinderControl::gap)
+    return "has no place where stops hold the binder";
+  if (const auto number = forming_number(effect.id, *a_case.stamping))
+    return *number == effect.off.front() ? "" : fmt::format("is in the case already (effects.{})", effect.id);
   if (effect.id == discretisation) return "";
   if (effect.stage == "rig") return "is a fault of the friction rig, which no press has";
   return "has no term in the stamping";
@@ -246,10 +273,6 @@ std::vector<std::string> keys_of(const discover::ForwardModel& library, const Tr
   for (const auto& [effect, values] : trial.effects) {
     const Candidate& candidate = library.candidates[effect];
     if (candidate.id == discretisation) continue;
-    if (candidate.id == "inertia") {
-      keys.push_back(set_text("artefact.mass_scaling", values[0]));
-      continue;
-    }
     if (candidate.id == "shear_rate") keys.emplace_back("fabric.shear_rate=on");
     for (std::size_t k = 0; k < candidate.numbers.size(); ++k)
       keys.push_back(set_text(candidate.numbers[k].key, values[static_cast<Eigen::Index>(k)]));

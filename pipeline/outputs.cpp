@@ -88,6 +88,7 @@ constexpr Column<History> history_columns[] = {
     {"friction_plies_J", [](const History& r) { return r.friction_plies; }},
     {"dissipation_shear_rate_J", [](const History& r) { return r.dissipation_shear_rate; }},
     {"dissipation_shear_hysteresis_J", [](const History& r) { return r.dissipation_shear_hysteresis; }},
+    {"dissipation_tow_rate_J", [](const History& r) { return r.dissipation_tow_rate; }},
     {"dissipation_artefact_J", [](const History& r) { return r.dissipation_artefact; }},
     {"dissipation_numerical_J", [](const History& r) { return r.dissipation_numerical; }},
     {"ledger_residual_J", [](const History& r) { return r.ledger_residual; }},

@@ -104,7 +104,7 @@ Canvas ledger_chart(const Rows& history) {
     int style;
   };
   // Bottom to top; stored energy blue, friction orange, other losses green and grey.
-  static constexpr std::array<Entry, 13> entries{
+  static constexpr std::array<Entry, 14> entries{
       {{"Tow stretch", &HistoryRow::energy_tow, 0},
        {"Fabric shear", &HistoryRow::energy_shear, 1},
        {"Bending", &HistoryRow::energy_bending, 2},
@@ -116,6 +116,7 @@ Canvas ledger_chart(const Rows& history) {
        {"Friction, punch", &HistoryRow::friction_punch, 8},
        {"Resin shear rate", &HistoryRow::dissipation_shear_rate, 9},
        {"Friction of tows", &HistoryRow::dissipation_shear_hysteresis, 6},
+       {"Tow stretch rate", &HistoryRow::dissipation_tow_rate, 0},
        {"Time stepping", &HistoryRow::dissipation_numerical, 10},
        {"Artefacts", &HistoryRow::dissipation_artefact, 11}}};
   StackedChart chart;
@@ -130,8 +131,10 @@ Canvas ledger_chart(const Rows& history) {
   const bool plies_rub = std::any_of(history.begin(), history.end(),
                                      [](const HistoryRow& row) { return row.friction_plies != 0.0; });
   const bool tows_rub = !history.empty() && history.back().dissipation_shear_hysteresis > 0.0;
+  const bool tows_flow = !history.empty() && history.back().dissipation_tow_rate > 0.0;
   for (const Entry& entry : entries) {
     if (entry.value == &HistoryRow::dissipation_shear_hysteresis && !tows_rub) continue;  // switched off
+    if (entry.value == &HistoryRow::dissipation_tow_rate && !tows_flow) continue;
     add(entry);
     if (plies_rub && entry.value == &HistoryRow::friction_punch)
       add({"Friction, plies", &HistoryRow::friction_plies, 7});

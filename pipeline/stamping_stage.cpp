@@ -108,7 +108,9 @@ macroscale::StampingResult run_stamping_stage(const macroscale::StampingSpec& sp
                                               const friction::Model& friction, RunFolder& folder,
                                               const Cache& cache, StampingStageOptions options) {
   const int steps = macroscale::all_steps(spec.process);
-  StampingFiles files(folder, cache, options, fabric, steps);
+  // Files show the load of the tows that were stamped.
+  const mesoscale::FabricProperties acting = macroscale::with_effects(fabric, spec.effects);
+  StampingFiles files(folder, cache, options, acting, steps);
   std::optional<StampingRecord> from;
   const auto work = [&](bool& reused) {
     from = cache.find(options.inputs.key(), read_stamping_record);
@@ -146,13 +148,13 @@ macroscale::StampingResult run_stamping_stage(const macroscale::StampingSpec& sp
   if (!result.hold.empty()) {
     folder.write("macroscale/hold.csv", hold_csv(result.hold));
     if (!result.summary.release)
-      folder.write("macroscale/blank_held.vtu", vtu(mesh_with_indicators(result.final_state, fabric)));
+      folder.write("macroscale/blank_held.vtu", vtu(mesh_with_indicators(result.final_state, acting)));
   }
   if (result.summary.release) {
     folder.write("macroscale/release.csv", history_csv(std::vector{result.summary.release->row}));
-    folder.write("macroscale/blank_released.vtu", vtu(mesh_with_indicators(result.final_state, fabric)));
+    folder.write("macroscale/blank_released.vtu", vtu(mesh_with_indicators(result.final_state, acting)));
   }
-  if (!result.summary.completed && !result.summary.stopped) write_failure(result, fabric, folder);
+  if (!result.summary.completed && !result.summary.stopped) write_failure(result, acting, folder);
   return result;
 }
 

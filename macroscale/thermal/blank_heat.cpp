@@ -31,15 +31,26 @@ std::span<const double> film_of(const thermal::Column& column, std::span<const d
 
 // Over the ply between the films: the fabric is sheared as one through its thickness, so its layers resist
 // side by side.
-double rate_factor_of(const thermal::Column& column, const mesoscale::ShearRate& rate,
-                      std::span<const double> temperature, double blank_temperature) {
+template <class Law>
+double mean_over_ply(const thermal::Column& column, std::span<const double> temperature, const Law& law,
+                     double reference) {
   const auto films = static_cast<std::size_t>(column.film_cells);
   double sum = 0.0, width = 0.0;
   for (std::size_t i = films; i + films < column.cells(); ++i) {
-    sum += column.grid.width[i] * rate.consistency_at(temperature[i]);
+    sum += column.grid.width[i] * law(temperature[i]);
     width += column.grid.width[i];
   }
-  return sum / (width * rate.consistency_at(blank_temperature));
+  return sum / (width * reference);
+}
+
+std::vector<double> means_of_quads(const Blank& blank, const std::vector<double>& of_nodes) {
+  std::vector<double> means(blank.quads.size());
+  for (std::size_t q = 0; q < means.size(); ++q) {
+    double sum = 0.0;
+    for (const int node : blank.quads[q]) sum += of_nodes[static_cast<std::size_t>(node)];
+    means[q] = 0.25 * sum;
+  }
+  return means;
 }
 
 // What the mechanics take from the field.
@@ -48,8 +59,11 @@ void derive(const Scene& scene, BlankHeat& heat) {
   const int nodes = scene.blank.nodes();
   heat.film.resize(static_cast<std::size_t>(nodes));
   std::vector<double> factor(static_cast<std::size_t>(nodes), 1.0);
+  const ShearSoftening& softening = scene.effects.softening;
+  std::vector<double> soft(softening.on() ? static_cast<std::size_t>(nodes) : 0);
+  const mesoscale::ShearRate& resin = scene.fabric->shear_rate;
   const auto widths = std::span<const double>(column.grid.width);
-  const bool rate = scene.shear_rate > 0.0 && scene.fabric->shear_rate.consistency > 0.0;
+  const bool rate = scene.shear_rate > 0.0 && resin.consistency > 0.0;
   const friction::Model standard;
   const friction::Model& model = scene.friction ? *scene.friction : standard;
   tbb::parallel_for(0, nodes, [&](int i) {
@@ -58,15 +72,15 @@ void derive(const Scene& scene, BlankHeat& heat) {
       heat.film[static_cast<std::size_t>(i)][side] = friction::temperature_as_thin_as(
           model.rheology.temperature, model.film, film_of(column, at, side), film_of(column, widths, side));
     if (rate)
-      factor[static_cast<std::size_t>(i)] =
-          rate_factor_of(column, scene.fabric->shear_rate, at, scene.blank_temperature);
+      factor[static_cast<std::size_t>(i)] = mean_over_ply(
+          column, at, [&](double t) { return resin.consistency_at(t); },
+          resin.consistency_at(scene.blank_temperature));
+    if (softening.on())
+      soft[static_cast<std::size_t>(i)] = mean_over_ply(
+          column, at, [&](double t) { return softening.factor_at(t); }, 1.0);
   });
-  heat.rate_factor.resize(scene.blank.quads.size());
-  for (std::size_t q = 0; q < heat.rate_factor.size(); ++q) {
-    double sum = 0.0;
-    for (const int node : scene.blank.quads[q]) sum += factor[static_cast<std::size_t>(node)];
-    heat.rate_factor[q] = 0.25 * sum;
-  }
+  heat.rate_factor = means_of_quads(scene.blank, factor);
+  if (softening.on()) heat.shear_factor = means_of_quads(scene.blank, soft);
 }
 
 // A face takes what all tools that touch it take; air where none does.
@@ -204,8 +218,9 @@ double tool_temperature(const Scene& scene, int tool) {
   return own.value_or(scene.tool_temperature);
 }
 
-double fabric_temperature(const Scene& scene, const BlankHeat& heat, int tool, const ContactPoint& point) {
-  if (heat.empty()) return scene.blank_temperature;
+double fabric_temperature(const Scene& scene, const State& state, int tool, const ContactPoint& point) {
+  const BlankHeat& heat = state.heat;
+  if (heat.empty()) return scene.blank_temperature_at(state.time);
   const Side side = side_of(scene.tools[static_cast<std::size_t>(tool)].role);
   double mean = 0.0;
   for (std::size_t a = 0; a < static_cast<std::size_t>(point.nodes); ++a)

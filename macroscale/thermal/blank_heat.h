@@ -31,6 +31,9 @@ struct BlankHeat {
   /// Per quad: consistency of the rate-dependent shear resistance, mean over the ply's thickness, over that
   /// at the blank's temperature [-].
   std::vector<double> rate_factor;
+  /// Per quad: factor on the rate-free shear resistance, mean over the ply's thickness; empty: it does not
+  /// soften [-].
+  std::vector<double> shear_factor;
 
   bool empty() const { return field.empty(); }
 };
@@ -62,7 +65,7 @@ HeatRow heat_row(const Scene& scene, const BlankHeat& heat, double time);
 /// Temperature of a tool's surface [K].
 double tool_temperature(const Scene& scene, int tool);
 /// What friction takes for the fabric's temperature at a contact point against a tool [K].
-double fabric_temperature(const Scene& scene, const BlankHeat& heat, int tool, const ContactPoint& point);
+double fabric_temperature(const Scene& scene, const State& state, int tool, const ContactPoint& point);
 
 /// The heat of `end` over the step that led there from `start`: contacts as they are at the end of it,
 /// friction as it was dissipated. What it says of viscosities holds for the next step (explicit coupling,

@@ -29,8 +29,11 @@ const std::vector<Family>& families() {
        {"sliding_evolution", "wear", "film_squeeze_out", "dwell_ageing", "static_peak",
         "normal_force_relaxation"}},
       {"a speed effect",
-       {"stick_slip", "shear_heating", "viscosity_plateau", "boundary_lubrication", "shear_rate",
-        "inertia"}}};
+       {"stick_slip", "shear_heating", "viscosity_plateau", "boundary_lubrication", "shear_rate", "inertia",
+        "tow_rate_stiffening"}},
+      {"an effect of the fabric's shape",
+       {"shear_locking", "tension_shear_coupling", "bending", "crimp_straightening",
+        "shear_thermal_softening"}}};
   return all;
 }
 

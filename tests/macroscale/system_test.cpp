@@ -72,6 +72,13 @@ VectorXd shaken(const Bench& b, double size) {
 TEST_CASE("the residual is the slope of the incremental potential, the matrix the slope of the residual",
           "[macroscale][system][derivative]") {
   const auto b = bench(GENERATE(ContactSites::nodes, ContactSites::gauss));
+  if (GENERATE(false, true)) {  // effects of the fabric
+    b->scene.effects.shear_locking = {50.0, 0.01, 2.5};
+    b->scene.effects.softening = {0.01, 400.0};
+    b->scene.effects.tow_viscosity = 100.0;
+    b->scene.coupling = coupling_of({0.5, 1000.0}, b->fabric.tension_energy);
+    b->state.x *= 1.001;
+  }
   System system(b->scene);
   if (GENERATE(false, true)) {  // compaction of the sheared fabric, another one at each point
     b->fabric.compaction =

@@ -137,15 +137,17 @@ TEST_CASE("temperatures keep the symmetries of the square", "[macroscale][therma
       }
 }
 
-TEST_CASE("the rate-dependent shear resistance takes the mean of its consistency through the ply",
+TEST_CASE("shear resistance takes the mean of its consistency, and of its softening, through the ply",
           "[macroscale][thermal]") {
-  const StampingSpec spec = small_case();
+  StampingSpec spec = small_case();
+  spec.effects.softening = {0.01, 453.15};
   const auto properties = fabric();
   const auto law = law_of_the_film();
   const Scene scene = stamping_scene(spec, properties, law);
   const System system(scene);
   State start = initial_state(scene);
   for (const double factor : start.heat.rate_factor) CHECK(factor == Approx(1.0).epsilon(1e-12));
+  for (const double factor : start.heat.shear_factor) CHECK(factor == Approx(1.0).epsilon(1e-12));
   // Cooled through and through by holding for long on tools at one temperature: the Arrhenius ratio of the
   // two.
   State held = start;
@@ -155,6 +157,8 @@ TEST_CASE("the rate-dependent shear resistance takes the mean of its consistency
   const double expected =
       properties.shear_rate.consistency_at(here) / properties.shear_rate.consistency_at(453.15);
   CHECK(held.heat.rate_factor[0] == Approx(expected).epsilon(1e-3));
+  // The rate-free resistance that softens with temperature is taken the same way.
+  CHECK(held.heat.shear_factor[0] == Approx(std::exp(-0.01 * (here - 453.15))).epsilon(1e-3));
   CHECK(expected > 2.0);
 }
 
@@ -163,6 +167,7 @@ TEST_CASE(
     "[macroscale][thermal][checkpoint]") {
   StampingSpec spec = small_case();
   spec.process.hold = 2.0;
+  spec.effects.softening = {0.01, 453.15};
   std::vector<std::string> kept;
   StampingControl control;
   control.keep = [&](const StampingCheckpoint& c, bool) { kept.push_back(bytes_of(c)); };

@@ -33,6 +33,7 @@ struct Run {
   std::string history;  ///< history.csv
   double force;         ///< of the punch at the end [N]
   macroscale::HistoryRow last;
+  double turn = 0.0;  ///< of the blank about the punch's axis, mean of its nodes [rad]
 };
 
 /// The keys `effects: {id: ...}` of a file, through the solver, to the bytes of history.csv.
@@ -44,7 +45,16 @@ Run run(const std::string& effects, const std::vector<std::string>& assignments 
   fabric.contact.log_fraction = CurveFamily({0.0}, {Curve({0.0, 20.0}, {-2.0, -0.2})});
   const auto result = macroscale::run_stamping(*a_case.stamping, fabric, a_case.friction->model);
   REQUIRE(result.summary.completed);
-  return {pipeline::history_csv(result.history), result.history.back().punch_force, result.history.back()};
+  double turned = 0.0, size = 0.0;
+  for (std::size_t k = 0; k < result.final_state.position.size(); ++k) {
+    const auto& now = result.final_state.position[k];
+    const double x = 32e-3 * (result.final_state.grid[k][0] - 5.0),
+                 y = 32e-3 * (result.final_state.grid[k][1] - 5.0);
+    turned += x * now[1] - y * now[0];
+    size += x * x + y * y;
+  }
+  return {pipeline::history_csv(result.history), result.history.back().punch_force, result.history.back(),
+          turned / size};
 }
 
 /// The amplitude, which is the first number of each effect. Hersey numbers here lie far beyond the boundary
@@ -112,6 +122,51 @@ TEST_CASE(
   CAPTURE(once, twice);
   CHECK(once != 0.0);
   CHECK(twice == Approx(2.0 * once).epsilon(0.01));
+}
+
+TEST_CASE("every effect of forming is off at its off value to the byte, and linear when tiny",
+          "[pipeline][effect]") {
+  struct Effect {
+    const char* id;
+    const char* amplitude;
+    const char* unit;
+    const char* more;  ///< other keys of the effect
+    double off, tiny;
+  };
+  // Shear reaches 12 degrees in this short stroke, and the blank is as warm as the reference of its
+  // softening.
+  const std::vector<Effect> effects{
+      {"shear_locking", "amplitude", "N/m", ", angle: 2 deg", 0.0, 1e-5},
+      {"tension_shear_coupling", "amplitude", "", "", 0.0, 1e-6},
+      {"bending", "factor", "", "", 1.0, 1e-5},
+      {"tow_rate_stiffening", "viscosity", "N s/m", "", 0.0, 1e-3},
+      {"crimp_straightening", "stretch", "", "", 0.0, 1e-6},
+      {"shear_thermal_softening", "rate", "1/K", ", reference: 120 degC", 0.0, 1e-6},
+      {"blank_cooling", "rate", "1/s", "", 0.0, 1e-6},
+      {"inertia", "factor", "", "", 1.0, 1e-4},
+      {"binder_force_level", "error", "", "", 0.0, 1e-6},
+      {"initial_orientation", "angle", "rad", "", 0.0, 1e-6}};
+  const Run without = run("");
+  for (const Effect& effect : effects) {
+    CAPTURE(effect.id);
+    const auto with = [&](double amplitude) {
+      return run(std::string("effects: {") + effect.id + ": {" + effect.amplitude + ": " +
+                 pipeline::shortest(amplitude) + " " + effect.unit + effect.more + "}}\n");
+    };
+    CHECK((run(std::string("effects: {") + effect.id + ": off}\n").history == without.history));
+    const Run off = with(effect.off), one = with(effect.off + effect.tiny),
+              two = with(effect.off + 2.0 * effect.tiny);
+    CHECK((off.history == without.history));
+    CHECK(off.turn == without.turn);
+    // Round tools do not see how the blank lies; where its nodes are does.
+    const bool turns = std::string(effect.id) == "initial_orientation";
+    const auto read = [&](const Run& of) { return turns ? of.turn : of.force; };
+    const double once = read(one) - read(without), twice = read(two) - read(without);
+    CAPTURE(once, twice);
+    CHECK((one.history != without.history));
+    CHECK(once != 0.0);
+    CHECK(twice == Approx(2.0 * once).epsilon(0.01));
+  }
 }
 
 TEST_CASE("friction between tows is off at a share of 0 to the byte, and linear when tiny",

@@ -99,8 +99,8 @@ TEST_CASE("the history table has the columns other programs rely on", "[outputs]
       "work_punch_J", "work_binder_J", "work_gravity_J", "energy_tow_J", "energy_shear_J", "energy_bending_J",
       "energy_twist_J", "energy_compaction_J", "energy_kinetic_J", "energy_press_J", "friction_punch_J",
       "friction_die_J", "friction_binder_J", "friction_plies_J", "dissipation_shear_rate_J",
-      "dissipation_shear_hysteresis_J", "dissipation_artefact_J", "dissipation_numerical_J",
-      "ledger_residual_J",
+      "dissipation_shear_hysteresis_J", "dissipation_tow_rate_J", "dissipation_artefact_J",
+      "dissipation_numerical_J", "ledger_residual_J",
       // Not of the ledger.
       "force_balance_N", "folded_nodes", "near_nodes", "self_crossings",
       "friction_work_outside_calibration_J", "punch_deflection_mm"};
@@ -126,6 +126,7 @@ TEST_CASE("every history column holds its own quantity in its own unit", "[outpu
                                                   &Row::friction_plies,
                                                   &Row::dissipation_shear_rate,
                                                   &Row::dissipation_shear_hysteresis,
+                                                  &Row::dissipation_tow_rate,
                                                   &Row::dissipation_artefact,
                                                   &Row::dissipation_numerical,
                                                   &Row::ledger_residual,

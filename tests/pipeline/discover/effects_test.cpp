@@ -31,7 +31,7 @@ TEST_CASE("the library holds every id of the house that acts now, each from its 
           "[discover][effects]") {
   std::set<std::string> ids;
   for (const EffectFile& effect : built_in_effects()) ids.insert(effect.id);
-  CHECK(ids.size() == 27);  // F1 to F15, R1 to R6, shear_rate, P1, P2, P4, inertia, discretisation
+  CHECK(ids.size() == 36);  // F1 to F15, R1 to R6, M1 to M5, M7, M8, P1 to P7, discretisation
   for (const char* id : {"tool_temperature_film", "boundary_lubrication", "mislabelled_condition",
                          "shear_rate", "inertia", "discretisation"})
     CHECK(ids.contains(id));
