@@ -153,7 +153,7 @@ void check_shapes(Findings& f, const PunchSpec& punch, const DieSpec& die, const
 Problems check(const StampingSpec& spec) {
   Findings f;
   const auto& [blank, punch, die, binder, process, artefact, shear_rate, shear_friction, contact_pressure,
-               contact_sites, compaction_follows_shear, heat] = spec;
+               contact_sites, compaction_follows_shear, self_contact, heat] = spec;
   if (heat) f.add(thermal::check(*heat));
   f.add(check_press(spec));
   const double die_edge = die.opening_radius + die.fillet;

@@ -11,8 +11,10 @@
 
 #include <Eigen/Geometry>
 
+#include "macroscale/checkpoint.h"
 #include "macroscale/folds.h"
 #include "macroscale/ledger.h"
+#include "macroscale/quality.h"
 #include "macroscale/system.h"
 #include "tests/derivative_check.h"
 #include "tests/macroscale/folded_strip.h"
@@ -73,6 +75,23 @@ TEST_CASE("a flat sheet, a sheared one, a dome and a wave meet no part of themse
              [&](double x, double y) { return Vector3d(x, y, 0.15 * size * std::sin(4.0 * pi * x / size)); }})
       CHECK(pairs_of(blank, placed(blank, place)).empty());
   }
+}
+
+TEST_CASE("a bend as tight as the fabric is thick touches itself nowhere, with legs to it these do",
+          "[macroscale][self_contact]") {
+  constexpr double h = 0.25e-3, r = 0.5 * thickness;
+  const auto bent = [&](int cells) {
+    const Blank blank = make_blank({cells * h, 4 * h}, h * (1.0 + 1e-9));
+    const double arc = 9 * h, legs = 0.5 * (cells * h - arc);
+    return pairs_of(blank, placed(blank, [&](double x, double y) -> Vector3d {
+                      const double s = x + 0.5 * cells * h - legs, angle = std::clamp(s, 0.0, arc) / r;
+                      const double before = std::min(s, 0.0), after = std::max(s - arc, 0.0);
+                      return {before + r * std::sin(angle) + after * std::cos(arc / r), y,
+                              r * (1.0 - std::cos(angle)) + after * std::sin(arc / r)};
+                    }));
+  };
+  CHECK(bent(9).empty());
+  CHECK_FALSE(bent(33).empty());
 }
 
 TEST_CASE("legs of a hairpin meet each other, the faces that look at each other only",
@@ -389,8 +408,25 @@ struct Flight {
   VectorXd x;
 };
 
-// A hairpin whose upper leg flies down on the lower one, which flies up.
-Flight fly(bool touches, double speed_of_leg, double longest) {
+// What a checkpoint keeps of a state of a sheet that has met itself.
+State through_checkpoint(const Scene& scene, const System& system, const State& state) {
+  StampingCheckpoint checkpoint;
+  checkpoint.state = state;
+  checkpoint.blank = blank_state(system, state, nullptr);
+  heddle::Hdf5Writer file;
+  write(file, "/flight", checkpoint);
+  const StampingCheckpoint read = read_checkpoint(heddle::Hdf5Reader(file.finish()), "/flight");
+  StateSizes sizes;
+  sizes.tools = 1;
+  CHECK_FALSE(fault_of(read, scene.blank, scene.contact_sites, 0, sizes).empty());  // it has no room for it
+  sizes.self_contact = true;
+  CHECK(fault_of(read, scene.blank, scene.contact_sites, 0, sizes).empty());
+  return read.state;
+}
+
+// A hairpin whose upper leg flies down on the lower one, which flies up. With `kept` it is put away half-way
+// and goes on in a system of its own.
+Flight fly(bool touches, double speed_of_leg, double longest, bool kept = false) {
   const auto fabric = make_fabric({.bending = 1e-5});
   heddle::friction::Model friction;
   friction.law = heddle::friction::Coulomb{mu};
@@ -401,6 +437,8 @@ Flight fly(bool touches, double speed_of_leg, double longest) {
   scene.friction = &friction;
   scene.self_contact = touches;
   scene.shear_rate = 0.0;
+  // Far below: a stamping has a tool.
+  scene.tools = {{Role::die, PlaneShape{{0, 0, -1.0}, {0, 0, 1}}, Motion::fixed, 0.0, 0.0}};
   System system(scene);
   State state = initial_state(scene);
   fold(strip, 12e-3, state.x);
@@ -422,11 +460,15 @@ Flight fly(bool touches, double speed_of_leg, double longest) {
   SolveOptions options;
   options.force_tolerance = 1e-9;
   options.relative_tolerance = 0.0;
-  flight.rejected =
-      run_until(system, state, 0.06, longest, {}, options, [&](const StepData& step, State& end) {
-        flight.residual += account(system, step, end).ledger.residual();
-        flight.crossings = std::max(flight.crossings, count_crossings(scene.blank, end.x));
-      });
+  const double last = 0.06;
+  const auto look = [&](const StepData& step, const State& end) {
+    flight.residual += account(system, step, end).ledger.residual();
+    flight.crossings = std::max(flight.crossings, count_crossings(scene.blank, end.x));
+  };
+  flight.rejected = run_until(system, state, 0.5 * last, longest, {}, options, look);
+  System after(scene);
+  if (kept) state = through_checkpoint(scene, system, state);
+  flight.rejected += run_until(kept ? after : system, state, last, longest, {}, options, look);
   flight.momentum = (momentum(state) - before).norm();
   flight.x = state.x;
   return flight;
@@ -444,8 +486,9 @@ TEST_CASE("legs of a hairpin that fly into each other cross without contact, and
   CHECK(held.crossings == 0);
   CHECK(held.momentum < 1e-9);
   CHECK(std::abs(held.residual) < 1e-3 * held.kinetic);
-  // The same again, bit for bit.
+  // The same again, bit for bit, and the same from a checkpoint.
   CHECK(fly(true, 0.4, 1e-3).x == held.x);
+  CHECK(fly(true, 0.4, 1e-3, true).x == held.x);
 }
 
 TEST_CASE("a step in which legs would pass right through each other is tried again with half of it",
