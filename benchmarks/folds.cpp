@@ -1,10 +1,10 @@
-// What looking for folds costs once a step, beside one Newton iteration on the same grid (laws, matrix,
-// factors, back-substitution, forces) and beside merely reading the positions of all corners of all cells
-// once.
+// What looking for folds, and for parts of the sheet that meet, costs once a step, beside one Newton
+// iteration on the same grid (laws, matrix, factors, back-substitution, forces) and beside merely reading the
+// positions of all corners of all cells once.
 //
 //     benchmark_folds [spacing in mm]
 //
-// Appends a row to benchmarks/results/folds.csv. Times are processor
+// Appends a row to benchmarks/results/folds.csv and one to self_contact.csv. Times are processor
 // time, the best of many repeats: the machine may be shared.
 #include <fmt/format.h>
 
@@ -16,6 +16,7 @@
 #include "benchmarks/measure.h"
 #include "macroscale/folds.h"
 #include "macroscale/quality.h"
+#include "macroscale/self_contact.h"
 #include "macroscale/solve.h"
 #include "tests/macroscale/sample_fabric.h"
 
@@ -61,6 +62,11 @@ int main(int argc, char** argv) {
 
   double sum = 0.0;
   const double look = best_cpu_seconds(20, [&] { sum += find_folds(blank, fabric.thickness).near; });
+  const std::vector<PlyPoint> faces = self_points(scene.blank);
+  const double meetings = best_cpu_seconds(20, [&] {
+    sum += static_cast<double>(
+        pair_with_itself(scene.blank, faces, state.x, 3.0 * fabric.thickness, fabric.thickness).size());
+  });
   const double bare = best_cpu_seconds(20,
                                        [&] {
                                          for (int pass = 0; pass < passes; ++pass)
@@ -84,10 +90,14 @@ int main(int argc, char** argv) {
     sum += g[0];
   });
   fmt::print(
-      "{} nodes: folds {:.2f} ms, one Newton iteration {:.1f} ms ({:.1f} %), reading all corners {:.3f} ms\n",
-      scene.blank.nodes(), 1e3 * look, 1e3 * iteration, 100.0 * look / iteration, 1e3 * bare);
+      "{} nodes: folds {:.2f} ms, parts that meet {:.2f} ms, one Newton iteration {:.1f} ms ({:.1f} %), "
+      "reading all corners {:.3f} ms\n",
+      scene.blank.nodes(), 1e3 * look, 1e3 * meetings, 1e3 * iteration, 100.0 * look / iteration, 1e3 * bare);
   if (!std::isfinite(sum)) return 1;
   append_row("folds", "date,nodes,folds_ms,iteration_ms,bare_read_ms,folds_over_iteration",
              fmt::format("{},{},{:.3f},{:.2f},{:.4f},{:.4f}", today(), scene.blank.nodes(), 1e3 * look,
                          1e3 * iteration, 1e3 * bare, look / iteration));
+  append_row("self_contact", "date,nodes,meetings_ms,iteration_ms,meetings_over_iteration",
+             fmt::format("{},{},{:.3f},{:.2f},{:.4f}", today(), scene.blank.nodes(), 1e3 * meetings,
+                         1e3 * iteration, meetings / iteration));
 }

@@ -155,7 +155,7 @@ void check_shapes(Findings& f, const PunchSpec& punch, const DieSpec& die, const
 Problems check(const StampingSpec& spec) {
   Findings f;
   const auto& [blank, punch, die, binder, process, artefact, shear_rate, shear_friction, contact_pressure,
-               contact_sites, compaction_follows_shear, heat, effects] = spec;
+               contact_sites, compaction_follows_shear, self_contact, heat, effects] = spec;
   if (heat) f.add(thermal::check(*heat));
   f.add(check_press(spec));
   f.add(check(effects));

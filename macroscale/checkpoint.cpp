@@ -10,6 +10,7 @@
 #include <fmt/format.h>
 
 #include "macroscale/contact_points.h"
+#include "macroscale/self_contact.h"
 
 namespace heddle::macroscale {
 
@@ -471,14 +472,17 @@ std::string fault_of(const StampingCheckpoint& c, const Blank& blank, ContactSit
   const auto loaded = static_cast<std::size_t>(sizes.unknowns_of_tools);
   const std::size_t nodes = static_cast<std::size_t>(blank.nodes());
   const auto contacts = static_cast<std::size_t>(contact_count(blank, sites));
-  const std::size_t between = ply_points(blank).size();
+  const std::size_t between = ply_points(blank).size(), with_faces = between + self_points(blank).size();
+  // Faces of cells have a memory once the sheet has met itself.
+  const bool met = sizes.self_contact && c.state.coupling.quad.size() == with_faces;
+  const std::size_t rows_behind = between > 0 || met ? 1 : 0;
   const auto unknowns = static_cast<Eigen::Index>(3 * nodes + loaded);
   const bool fits = c.state.x.size() == unknowns && c.state.v.size() == unknowns &&
                     c.state.tool_z.size() == tools && c.state.corner_angle.size() == 4 * blank.quads.size() &&
-                    c.state.memory.size() == tools + (between > 0 ? 1 : 0) &&
+                    c.state.memory.size() == tools + rows_behind &&
                     std::all_of(c.state.memory.begin(), c.state.memory.begin() + tools,
                                 [&](const auto& m) { return m.size() == contacts; }) &&
-                    (between == 0 || c.state.memory.back().size() == between);
+                    (rows_behind == 0 || c.state.memory.back().size() == (met ? with_faces : between));
   if (!fits) return "its state is of another blank or other tools";
   if (c.step < 0 || c.step > steps || c.history.size() != static_cast<std::size_t>(c.step))
     return fmt::format("it stands at step {} with {} rows of history, and the run has {} steps", c.step,

@@ -43,6 +43,7 @@ BlankState read_instant(const Hdf5Reader& file, const std::string& group, const 
 /// What a state has to have, by the specification alone.
 struct StateSizes {
   int tools = 0, unknowns_of_tools = 0;
+  bool self_contact = false;  ///< whether it may hold what the faces of cells remember of other parts
 };
 
 /// Fault that keeps a checkpoint from being of a stamping of this blank in so many steps, or "".

@@ -230,6 +230,19 @@ bool crosses_sheet(const Sheet& sheet, const BoxGrid& boxes, int n, int m) {
   return crosses;
 }
 
+// Of the segments that begin at node n, how many cross; the other end of each that does is shown.
+template <class Show>
+int crossings_from(const Sheet& sheet, const BoxGrid& boxes, int n, const Show& show) {
+  int crossings = 0;
+  const auto [i, j] = sheet.grid(n);
+  for (const int m : {sheet.node(i + 1, j), sheet.node(i, j + 1)}) {
+    if (m < 0 || !crosses_sheet(sheet, boxes, n, m)) continue;
+    ++crossings;
+    show(m);
+  }
+  return crossings;
+}
+
 /// Nodes that fold, are near or cross, joined where they are as close in the grid as the two sides of a fold.
 std::vector<FoldPlace> places(const Sheet& sheet, const Folds& folds, const std::vector<char>& marked) {
   std::vector<FoldPlace> all;
@@ -302,15 +315,35 @@ Folds find_folds(const BlankState& blank, double thickness) {
     folds.folded += folds.turn[at] > fold_turn;
     folds.near += folds.distance[at] < thickness;
     marked[at] = folds.turn[at] > fold_turn || folds.distance[at] < thickness;
-    const auto [i, j] = sheet.grid(n);
-    for (const int m : {sheet.node(i + 1, j), sheet.node(i, j + 1)}) {
-      if (m < 0 || !crosses_sheet(sheet, boxes, n, m)) continue;
-      ++folds.crossings;
-      marked[at] = marked[static_cast<std::size_t>(m)] = 1;
-    }
+    folds.crossings +=
+        crossings_from(sheet, boxes, n, [&](int m) { marked[at] = marked[static_cast<std::size_t>(m)] = 1; });
   }
   folds.place = places(sheet, folds, marked);
   return folds;
+}
+
+int count_crossings(const Blank& blank, const Eigen::VectorXd& x) {
+  int crossings = 0;
+  for (int k = 0; k < blank.plies(); ++k) {
+    const Ply& ply = blank.ply(k);
+    BlankState shape;
+    shape.nu = ply.nu;
+    shape.nv = ply.nv;
+    for (int n = ply.first_node; n < ply.end_node; ++n) {
+      shape.grid.push_back(blank.grid[n]);
+      shape.reference.push_back({blank.reference[n].x(), blank.reference[n].y()});
+      shape.position.push_back({x[3 * n], x[3 * n + 1], x[3 * n + 2]});
+    }
+    for (int q = ply.first_quad; q < ply.end_quad; ++q) {
+      std::array<int, 4>& quad = shape.quads.emplace_back(blank.quads[q]);
+      for (int& node : quad) node -= ply.first_node;
+    }
+    if (shape.quads.empty()) continue;
+    const Sheet sheet(shape);
+    const BoxGrid boxes(sheet, 1.5 * sheet.spacing());
+    for (int n = 0; n < sheet.nodes(); ++n) crossings += crossings_from(sheet, boxes, n, [](int) {});
+  }
+  return crossings;
 }
 
 }  // namespace heddle::macroscale

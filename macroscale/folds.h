@@ -4,6 +4,9 @@
 #include <numbers>
 #include <vector>
 
+#include <Eigen/Core>
+
+#include "macroscale/blank.h"
 #include "macroscale/stamping.h"
 
 namespace heddle::macroscale {
@@ -40,5 +43,8 @@ struct Folds {
 
 /// @param thickness  of the fabric: two parts whose middles are nearer than this touch [m]
 Folds find_folds(const BlankState& blank, double thickness);
+
+/// Its `crossings` by itself, of a blank whose nodes stand at x [m].
+int count_crossings(const Blank& blank, const Eigen::VectorXd& x);
 
 }  // namespace heddle::macroscale

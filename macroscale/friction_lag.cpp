@@ -51,7 +51,7 @@ void freeze_plies(const System& system, const StepData& step, const VectorXd& x,
   if (!system.rubs(step, row)) return;
   tbb::parallel_for(std::size_t{0}, points.size(), [&](std::size_t i) {
     FrictionPoint& point = points[i];
-    point.memory = step.start->memory[row][i];
+    point.memory = system.memory_in_row(step, row, static_cast<int>(i));
     const PlyPair& pair = step.pairs[i];
     const NormalContact contact = system.contact_of_plies(pair, x);
     if (contact.pressure <= 0.0) return;

@@ -1,6 +1,8 @@
 #pragma once
 
 #include <array>
+#include <limits>
+#include <span>
 #include <vector>
 
 #include <Eigen/Core>
@@ -12,17 +14,18 @@
 
 namespace heddle::macroscale {
 
-/// The middle of a cell that may touch the next ply on one side of its own. Both sides of an interface look
-/// at each other, each with half of its material, so that neither is master. In the middle of a cell its
-/// slopes are good to second order: asked for anywhere else, plies that stick could not bend
-/// (docs/theory/plies.md).
+/// The middle of a cell that may touch the next ply on one side of its own, or its own ply where that folds.
+/// Both sides of an interface look at each other, each with half of its material, so that neither is master.
+/// In the middle of a cell its slopes are good to second order: asked for anywhere else, plies that stick
+/// could not bend (docs/theory/plies.md).
 struct PlyPoint {
   int quad = 0;
-  int against = 0;  ///< ply whose surface it may touch: the next above or below
-  int side = 1;     ///< +1: it lies above that ply
+  int against = 0;  ///< ply whose surface it may touch: the next above or below, or its own
+  int side = 1;     ///< +1: it lies above that ply; of its own ply: it touches with its own upper face
 };
 
-/// All of them: interface by interface from the bottom, cells of the lower ply first. None in a single ply.
+/// All between plies: interface by interface from the bottom, cells of the lower ply first. None in a single
+/// ply.
 std::vector<PlyPoint> ply_points(const Blank& blank);
 /// Number of its lower ply from the bottom.
 inline int interface_of(const PlyPoint& point) {
@@ -42,13 +45,28 @@ struct PlyPair {
   std::array<Eigen::Vector3d, 4>
       turn{};                     ///< of its own corners: distance times the gradient of the weight [-]
   double area = 0.0;              ///< half of its cell's material [m^2]
+  double rest = 0.0;              ///< distance of the middle surfaces that do not press each other [m]
   std::array<double, 2> local{};  ///< place in the other quad, 0..1
 };
 
-/// Pairs of all points of a blank at x. A point further than half a cell off the other ply's edge meets none,
-/// nor does one further than `reach` from it [m].
-std::vector<PlyPair> pair_plies(const Blank& blank, const std::vector<PlyPoint>& points,
-                                const Eigen::VectorXd& x, double reach);
+/// Where a point meets a surface, by whatever was looked for.
+struct PlyPlace {
+  int quad = -1;            ///< of the surface
+  double u = 0.5, v = 0.5;  ///< in it, 0..1
+  int side = 1;             ///< +1: the point lies on the side of the surface's normal
+  double rest = 0.0;        ///< [m]
+  /// Largest height of the smooth surface over its patch that is believed [m]: across a crease the patch says
+  /// nothing of it.
+  double most_rise = std::numeric_limits<double>::infinity();
+};
+/// The pair of a point and that place. @param normals  at the nodes at x
+PlyPair pair_at(const Blank& blank, const PlyPoint& point, const PlyPlace& place, const Eigen::VectorXd& x,
+                const std::vector<Eigen::Vector3d>& normals);
+
+/// Pairs of points between plies of a blank at x. A point further than half a cell off the other ply's edge
+/// meets none, nor does one further than `reach` from it [m].
+std::vector<PlyPair> pair_plies(const Blank& blank, std::span<const PlyPoint> points,
+                                const Eigen::VectorXd& x, double reach, double rest);
 
 /// Distance of the two middle surfaces at a pair, along its normal [m]: linear in x.
 double gap(const PlyPair& pair, const Eigen::VectorXd& x);

@@ -25,6 +25,7 @@ struct Scene {
   const mesoscale::FabricProperties* fabric = nullptr;
   const friction::Model* friction = nullptr;  ///< null = frictionless
   bool plies_rub = true;                      ///< whether the same law acts between plies
+  bool self_contact = false;                  ///< whether a ply that folds touches itself
   double nesting = 0.0;  ///< how much nearer than a thickness two plies lie unpressed [m]
   std::vector<Tool> tools;
 
@@ -67,7 +68,8 @@ struct State {
   std::vector<double> tool_z;  ///< displacement of each tool along z; of a sprung tool that of its drive [m]
   std::vector<double> corner_angle;       ///< gamma of each corner, 4 a quad [rad]
   std::vector<ShearMemory> shear_memory;  ///< of each corner; empty: no friction between tows
-  /// Per tool, per contact point; behind the tools, in a blank of several plies, per ply point.
+  /// Per tool, per contact point; behind the tools, in a blank of several plies or one that has met itself,
+  /// per ply point: those between plies, and the faces of all cells once one has met another part.
   std::vector<std::vector<friction::ContactState>> memory;
   PlyCoupling coupling;  ///< pattern of the matrix between plies, which a run that is resumed must share
   BlankHeat heat;        ///< empty: one temperature a run

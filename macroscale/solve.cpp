@@ -10,6 +10,7 @@
 
 #include "macroscale/friction_lag.h"
 #include "macroscale/newton.h"
+#include "macroscale/self_contact.h"
 
 namespace heddle::macroscale {
 
@@ -83,6 +84,10 @@ void place(const System& system, const StepData& step, const VectorXd& x, State&
     end.shear_memory[k] = sheared_to(scene.shear_friction, scene.fabric->shear_stress, start.shear_memory[k],
                                      std::sin(end.corner_angle[k]));
   end.memory = start.memory;
+  if (!step.pairs.empty()) {
+    end.memory.resize(scene.tools.size() + 1);
+    end.memory.back().resize(std::max(end.memory.back().size(), step.pairs.size()));
+  }
   end.coupling = system.coupling();
   end.heat = start.heat;
 }
@@ -92,8 +97,8 @@ void accept(const System& system, const StepData& step, const VectorXd& x, State
   const Scene& scene = system.scene();
   if (step.frictionless || !scene.friction) return;
   const FrictionSettings settings = system.friction_settings();
-  for (int k = 0; k < system.friction_rows(); ++k)
-    for (int i = 0; i < system.points_in_row(k); ++i) {
+  for (int k = 0; k < system.friction_rows(step); ++k)
+    for (int i = 0; i < system.points_in_row(step, k); ++i) {
       const FrictionPoint& point = step.friction[k][i];
       friction::ContactState& memory = end.memory[k][i];
       if (point.load == 0.0) continue;
@@ -141,11 +146,14 @@ Fault fault_of(const System& system, const StepData& step, const State& end) {
     }
   for (std::size_t k = 0; k < step.pairs.size(); ++k)
     if (const double approach = system.contact_of_plies(step.pairs[k], end.x).approach;
-        approach > 0.5 * scene.fabric->thickness)
-      return {fmt::format("cell {} is pressed {:.3f} mm into the next ply, through its middle",
-                          system.ply_points()[k].quad, 1e3 * approach),
-              FailureKind::pressed_through};
-  return {};
+        approach > 0.5 * scene.fabric->thickness) {
+      const PlyPoint& point = system.ply_points()[k];
+      const bool folded = point.against == scene.blank.ply_of_quad(point.quad);
+      return {fmt::format("cell {} is pressed {:.3f} mm into {}, through its middle", point.quad,
+                          1e3 * approach, folded ? "another part of the sheet" : "the next ply"),
+              folded ? FailureKind::folded : FailureKind::pressed_through};
+    }
+  return {passage_of(system, step, end), FailureKind::folded};
 }
 
 }  // namespace

@@ -9,9 +9,12 @@ void add_ply_fields(const System& system, const State& state, const StepData* st
   blank.ply_slip.assign(blank.position.size(), 0.0);
   blank.ply_pressure.assign(blank.position.size(), 0.0);
   const auto& points = system.ply_points();
-  for (std::size_t k = 0; k < points.size(); ++k) {
-    const double slip = state.memory.back()[k].slip,
-                 pressure = step ? system.contact_of_plies(step->pairs[k], state.x).pressure : 0.0;
+  // Faces of cells are among them once the sheet has met itself.
+  const auto& memory = state.memory.back();
+  for (std::size_t k = 0; k < memory.size(); ++k) {
+    const bool paired = step && k < step->pairs.size();
+    const double slip = memory[k].slip,
+                 pressure = paired ? system.contact_of_plies(step->pairs[k], state.x).pressure : 0.0;
     for (const int node : blank.quads[static_cast<std::size_t>(points[k].quad)]) {
       const auto n = static_cast<std::size_t>(node);
       blank.ply_slip[n] = std::max(blank.ply_slip[n], slip);
@@ -20,11 +23,15 @@ void add_ply_fields(const System& system, const State& state, const StepData* st
   }
 }
 
+double pairing_share(const StampingCheckpoint& at) {
+  const bool driven = !at.history.empty() && at.history.back().work_punch > 0.0;
+  return driven ? at.pairing / at.history.back().work_punch : 0.0;
+}
+
 StackSummary stack_summary(const Blank& blank, const StampingCheckpoint& at) {
   StackSummary s;
   s.patterns = at.patterns;
-  if (!at.history.empty() && at.history.back().work_punch > 0.0)
-    s.pairing_share = at.pairing / at.history.back().work_punch;
+  s.pairing_share = pairing_share(at);
   for (int k = 0; k < blank.plies(); ++k) {
     PlySummary& ply = s.plies.emplace_back();
     ply.orientation = std::atan2(blank.ply(k).warp[1], blank.ply(k).warp[0]);

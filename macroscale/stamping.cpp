@@ -99,6 +99,11 @@ void take_over(StampingResult& result, const StampingSpec& spec, const Blank& bl
   s.crush_share = at.peak_pressure / last_table_pressure;
   s.friction_swing = at.peak_swing;
   if (blank.plies() > 1) s.stack = stack_summary(blank, at);
+  if (spec.self_contact) {
+    const bool met = at.state.coupling.quad.size() > ply_points(blank).size();
+    s.self_contact =
+        SelfContactSummary{.met = met, .patterns = at.patterns, .pairing_share = pairing_share(at)};
+  }
   result.history = std::move(at.history);
   result.hold = std::move(at.hold);
   s.release = std::move(at.release);

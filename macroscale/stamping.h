@@ -138,7 +138,8 @@ struct StampingSpec {
   ContactPressure contact_pressure = ContactPressure::real;
   ContactSites contact_sites = ContactSites::nodes;
   bool compaction_follows_shear =
-      false;  ///< p(d, gamma) on current areas; off: the flat fabric's, initial areas
+      false;                 ///< p(d, gamma) on current areas; off: the flat fabric's, initial areas
+  bool self_contact = true;  ///< whether a ply that folds touches itself
   std::optional<thermal::ThermalSpec> thermal;  ///< absent: one temperature a run
   FabricEffects effects;                        ///< all off by default
 };
@@ -248,6 +249,13 @@ struct StackSummary {
                                ///< of sizes over the punch's work [-]
 };
 
+/// A sheet that may touch itself.
+struct SelfContactSummary {
+  bool met = false;            ///< parts of it have come within reach of each other
+  int patterns = 0;            ///< of the matrix, made anew as pairs, of plies as well, left the one before
+  double pairing_share = 0.0;  ///< as StackSummary's
+};
+
 struct StampingSummary {
   double peak_punch_force = 0.0;            ///< [N]
   double shear_angle_max = 0.0;             ///< [rad]
@@ -268,6 +276,7 @@ struct StampingSummary {
                                 ///< loads in a step that was accepted [-]; 0: all loads settled
   int self_crossings = 0;       ///< tow segments that pass through the sheet, most in any step (folds.h)
   double first_crossing = 0.0;  ///< punch displacement of the first step with one [m]
+  std::optional<SelfContactSummary> self_contact;  ///< where it may touch itself
   bool falling_branch = false;  ///< the law fell with speed somewhere: the solution may not be unique
   int nodes = 0, steps = 0, rejected_steps = 0, newton_iterations = 0;
   int factorisations = 0;           ///< of the matrix; more than Newton iterations where it was indefinite

@@ -99,6 +99,7 @@ Scene stamping_scene(const StampingSpec& spec, const mesoscale::FabricProperties
   Scene scene;
   scene.blank = stamping_blank(spec, fabric);
   scene.nesting = spec.blank.nesting;
+  scene.self_contact = spec.self_contact;
   scene.fabric = &fabric;
   scene.friction = &friction;
   const PressSpec& press = spec.process.press;
@@ -143,7 +144,8 @@ StateSizes state_sizes(const StampingSpec& spec) {
   const bool sprung = press.compliance > 0.0 || press.force_limit > 0.0;
   const bool loaded = spec.binder.control == BinderControl::force;
   const int dies = spec.die.bottom == DieBottom::flat ? 2 : 1;
-  return {1 + dies + spec.binder.sectors, (sprung ? 1 : 0) + (loaded ? spec.binder.sectors : 0)};
+  return {1 + dies + spec.binder.sectors, (sprung ? 1 : 0) + (loaded ? spec.binder.sectors : 0),
+          spec.self_contact};
 }
 
 }  // namespace heddle::macroscale

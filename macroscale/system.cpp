@@ -8,6 +8,7 @@
 #include <tbb/parallel_for.h>
 #include <tbb/parallel_reduce.h>
 
+#include "macroscale/self_contact.h"
 #include "macroscale/tool_drive.h"
 
 namespace heddle::macroscale {
@@ -70,7 +71,12 @@ System::System(const Scene& scene)
     : scene_(scene),
       size_(scene.unknowns()),
       points_(macroscale::contact_points(scene.blank, scene.contact_sites)),
-      ply_points_(macroscale::ply_points(scene.blank)) {
+      ply_points_(macroscale::ply_points(scene.blank)),
+      between_plies_(ply_points_.size()) {
+  if (scene.self_contact) {
+    const std::vector<PlyPoint> own = macroscale::self_points(scene.blank);
+    ply_points_.insert(ply_points_.end(), own.begin(), own.end());
+  }
   compaction_ = scene.fabric->compaction.curves().front();
   mass_.assign(size_, 0.0);
   const double density = scene.fabric->areal_density * scene.mass_scaling;
@@ -204,7 +210,7 @@ void System::evaluate(const StepData& step, const VectorXd& x, Position& at) con
   const bool rubs = scene_.friction && !step.frictionless;
   const FrictionSettings settings = friction_settings();
   at.contacts.resize(tools);
-  at.friction.resize(rubs ? friction_rows() : 0);
+  at.friction.resize(rubs ? friction_rows(step) : 0);
   for (int k = 0; k < tools; ++k) {
     at.contacts[k].resize(contacts());
     if (rubs) at.friction[k].resize(contacts());
@@ -293,8 +299,8 @@ double System::friction_difference(const StepData& step, const Position& from, c
   if (from.friction.empty()) return 0.0;
   const FrictionSettings settings = friction_settings();
   double sum = 0.0;
-  for (int k = 0; k < friction_rows(); ++k)
-    sum += ordered_sum(points_in_row(k), [&](int i) {
+  for (int k = 0; k < friction_rows(step); ++k)
+    sum += ordered_sum(points_in_row(step, k), [&](int i) {
       const FrictionPoint& point = step.friction[k][i];
       if (point.load == 0.0) return 0.0;
       return friction_power_difference(settings, point, from.friction[k][i], to.friction[k][i]);

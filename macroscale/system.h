@@ -26,11 +26,13 @@ struct StepData {
   /// Trellis angle at each contact point at the start, which compaction holds over the step [rad]; empty:
   /// that of the flat fabric.
   std::vector<double> contact_shear;
-  /// Per tool, per contact point: the lagged friction point (load 0 = no friction). Behind the tools, in a
-  /// blank of several plies, per ply point.
+  /// Per tool, per contact point: the lagged friction point (load 0 = no friction). Behind the tools, where
+  /// there are any, per pair.
   std::vector<std::vector<FrictionPoint>> friction;
-  std::vector<PlyPair> pairs;  ///< per ply point: what it meets at the start; empty in a single ply
-  Eigen::VectorXd iterate;     ///< the last position tried; the end of the step once it has converged [m]
+  /// Per ply point: what it meets at the start. Without the faces of cells as long as the sheet has met no
+  /// other part of itself, so empty in a single ply.
+  std::vector<PlyPair> pairs;
+  Eigen::VectorXd iterate;  ///< the last position tried; the end of the step once it has converged [m]
 };
 
 /// One contact point against one tool.
@@ -132,23 +134,31 @@ class System {
   CornerLaw corner_law(const StepData& step, int ply = 0) const;
   std::vector<CornerLaw> corner_laws(const StepData& step) const;  ///< of all plies
 
-  /// What may touch between plies; empty in a single ply.
+  /// What may touch between plies, then where the sheet may touch itself; empty in a single ply that may not.
   const std::vector<PlyPoint>& ply_points() const { return ply_points_; }
-  /// Rows of friction: a tool each, and one of the ply points where there are any.
-  int friction_rows() const { return static_cast<int>(scene_.tools.size()) + !ply_points_.empty(); }
-  int points_in_row(int row) const;
+  /// Those of them where the sheet may touch itself, and how far they look [m].
+  std::span<const PlyPoint> self_points() const { return std::span(ply_points_).subspan(between_plies_); }
+  double self_reach() const;
+  /// Rows of friction: a tool each, and one of the pairs where there are any.
+  int friction_rows(const StepData& step) const {
+    return static_cast<int>(scene_.tools.size()) + !step.pairs.empty();
+  }
+  int points_in_row(const StepData& step, int row) const;
+  /// What contact remembers at a point of any row; nothing at a pair that is the first of its kind.
+  friction::ContactState memory_in_row(const StepData& step, int row, int i) const;
   /// Whether that row rubs in this step.
   bool rubs(const StepData& step, int row) const;
   /// Area [m^2] and velocity of slip [m/s] of a point of any row.
   double area_in_row(const StepData& step, int row, int i) const;
   Eigen::Vector3d velocity_in_row(const StepData& step, const Eigen::VectorXd& x, int row, int i) const;
   NormalContact contact_of_plies(const PlyPair& pair, const Eigen::VectorXd& x) const;
-  std::vector<PlyPair> pairs_at(const Eigen::VectorXd& x) const;  ///< of all ply points, at positions x
+  /// Of all ply points, at positions x. @param all  whether they hold the faces of cells that meet nothing
+  std::vector<PlyPair> pairs_at(const Eigen::VectorXd& x, bool all = false) const;
   /// Finds what the ply points meet at the start of the step, and makes a new pattern of the matrix where
-  /// they have left the one there is. `coupling` is that of the state the step starts from.
+  /// they have left the one there is, that of the state the step starts from.
   void pair(StepData& step);
   const PlyCoupling& coupling() const { return coupling_; }
-  int patterns() const { return patterns_; }  ///< made because plies had moved out of the one before
+  int patterns() const { return patterns_; }  ///< made because pairs had moved out of the one before
   /// Factor on its rate term in one cell: 1 at the blank's temperature.
   double rate_factor(const StepData& step, std::size_t quad) const {
     return step.start->heat.empty() ? 1.0 : step.start->heat.rate_factor[quad];
@@ -203,6 +213,7 @@ class System {
   int size_ = 0;
   std::vector<ContactPoint> points_;
   std::vector<PlyPoint> ply_points_;
+  std::size_t between_plies_ = 0;  ///< how many of them
   PlyCoupling coupling_;
   int patterns_ = 0;
   Curve compaction_;          ///< of one face at gamma = 0

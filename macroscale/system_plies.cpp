@@ -5,6 +5,7 @@
 #include <tbb/blocked_range.h>
 #include <tbb/parallel_for.h>
 
+#include "macroscale/self_contact.h"
 #include "macroscale/system.h"
 
 namespace heddle::macroscale {
@@ -15,14 +16,24 @@ using Eigen::Matrix3d;
 using Eigen::Vector3d;
 using Eigen::VectorXd;
 
-// A node further than this from the other ply cannot reach it in one step, which moves tools by a thickness
-// at most. [thicknesses]
+// A node further than this from the other ply, or from another part of its own, cannot reach it in one step,
+// which moves tools by a thickness at most. [thicknesses]
 constexpr double reach = 3.0;
 
 }  // namespace
 
-int System::points_in_row(int row) const {
-  return row < static_cast<int>(scene_.tools.size()) ? contacts() : static_cast<int>(ply_points_.size());
+double System::self_reach() const {
+  return reach * scene_.fabric->thickness;
+}
+
+int System::points_in_row(const StepData& step, int row) const {
+  return row < static_cast<int>(scene_.tools.size()) ? contacts() : static_cast<int>(step.pairs.size());
+}
+
+friction::ContactState System::memory_in_row(const StepData& step, int row, int i) const {
+  const auto& memory = step.start->memory;
+  if (row >= static_cast<int>(memory.size()) || i >= static_cast<int>(memory[row].size())) return {};
+  return memory[row][i];
 }
 
 bool System::rubs(const StepData& step, int row) const {
@@ -41,20 +52,29 @@ Vector3d System::velocity_in_row(const StepData& step, const VectorXd& x, int ro
 }
 
 NormalContact System::contact_of_plies(const PlyPair& pair, const VectorXd& x) const {
-  return pair.quad < 0 ? NormalContact{} : ply_contact(compaction_, gap(pair, x), scene_.ply_rest());
+  return pair.quad < 0 ? NormalContact{} : ply_contact(compaction_, gap(pair, x), pair.rest);
 }
 
-std::vector<PlyPair> System::pairs_at(const VectorXd& x) const {
-  return pair_plies(scene_.blank, ply_points_, x, reach * scene_.fabric->thickness);
+std::vector<PlyPair> System::pairs_at(const VectorXd& x, bool all) const {
+  std::vector<PlyPair> pairs = pair_plies(scene_.blank, std::span(ply_points_).first(between_plies_), x,
+                                          reach * scene_.fabric->thickness, scene_.ply_rest());
+  if (!scene_.self_contact) return pairs;
+  const std::vector<PlyPair> own =
+      pair_with_itself(scene_.blank, self_points(), x, self_reach(), scene_.fabric->thickness);
+  pairs.insert(pairs.end(), own.begin(), own.end());
+  if (all) pairs.resize(ply_points_.size());
+  return pairs;
 }
 
 void System::pair(StepData& step) {
   if (ply_points_.empty()) return;
-  step.pairs = pairs_at(step.start->x);
-  // A run that is resumed goes on with the pattern of the one it continues: the order of elimination decides
-  // the last bits.
-  if (!step.start->coupling.empty() && !(step.start->coupling == coupling_)) couple(step.start->coupling);
-  if (covers(scene_.blank, coupling_, step.pairs)) return;
+  // Once a part of the sheet has met another, the pattern holds room for all faces: it outlives times in
+  // which none meet.
+  step.pairs = pairs_at(step.start->x, step.start->coupling.quad.size() > between_plies_);
+  // A run that is resumed, and a step that is tried again, go on with the pattern of the state they start
+  // from: the order of elimination decides the last bits.
+  if (!(step.start->coupling == coupling_)) couple(step.start->coupling);
+  if (step.pairs.empty() || covers(scene_.blank, coupling_, step.pairs)) return;
   couple(coupling_of(step.pairs));
   ++patterns_;
 }

@@ -361,6 +361,7 @@ macroscale::StampingSpec stamping_of(const Settings& settings, const std::filesy
   stamping.contact_pressure = contact_pressure_of(settings);
   if (settings.is("contact.points", "gauss")) stamping.contact_sites = macroscale::ContactSites::gauss;
   stamping.compaction_follows_shear = settings.is("contact.compaction", "sheared");
+  stamping.self_contact = settings.is("contact.self", "folds");
   stamping.thermal = thermal_of(settings);
   take_forming_effects(settings, stamping);
   return stamping;

@@ -108,14 +108,20 @@ std::vector<std::string> fold_warnings(const macroscale::Folds& folds,
   if (run.self_crossings > 0)
     warnings.push_back(fmt::format(
         "The sheet has passed through itself: up to {} tow segments cross it in one step, from {:.1f} mm of "
-        "stroke on. It feels no contact with itself, so forces and shapes after that are not to be trusted.",
-        run.self_crossings, 1e3 * run.first_crossing));
+        "stroke on. {}, so forces and shapes after that are not to be trusted.",
+        run.self_crossings, 1e3 * run.first_crossing,
+        run.self_contact
+            ? "Its contact with itself did not hold there (edges and creases of a cell or two are not seen)"
+            : "It feels no contact with itself (contact.self)"));
   if (folds.place.empty()) return warnings;
   const macroscale::FoldPlace& largest = folds.place.front();
   warnings.push_back(fmt::format(
       "The sheet folds on itself in {} place{}, the largest {}: {} nodes turn by more than 120° within four "
-      "spacings, {} stand nearer than a thickness to another part of it.",
-      folds.place.size(), folds.place.size() == 1 ? "" : "s", place(largest.at), folds.folded, folds.near));
+      "spacings, {} stand nearer than a thickness to another part of it{}.",
+      folds.place.size(), folds.place.size() == 1 ? "" : "s", place(largest.at), folds.folded, folds.near,
+      !run.self_contact       ? ", which it does not feel (contact.self)"
+      : run.self_contact->met ? ", which presses and rubs it"
+                              : ""));
   return warnings;
 }
 

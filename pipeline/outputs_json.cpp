@@ -384,6 +384,10 @@ Json folds_json(const macroscale::Folds& folds, const macroscale::StampingSummar
            {"places", places},
            {"self_crossings_in_any_step", run.self_crossings}};
   if (run.self_crossings > 0) out["first_self_crossing_mm"] = 1e3 * run.first_crossing;
+  if (run.self_contact && run.self_contact->met) {
+    out["matrix_patterns"] = run.self_contact->patterns;
+    out["pairing_share"] = run.self_contact->pairing_share;
+  }
   return out;
 }
 

@@ -136,6 +136,9 @@ std::vector<Key> contact_keys() {
       {.path = "contact.compaction", .type = KeyType::choice, .presence = defaulted, .default_text = "flat",
        .choices = {"flat", "sheared"}, .stage = stamping,
        .help = "flat: every place is pressed as the fabric that is not sheared; sheared: the pressure over thickness follows the trellis angle, on the area of the sheared fabric."},
+      {.path = "contact.self", .type = KeyType::choice, .presence = defaulted, .default_text = "folds",
+       .choices = {"folds", "off"}, .stage = stamping,
+       .help = "folds: where a ply folds on itself its parts press and rub each other as plies do; off: they pass through each other."},
   };
 }
 

@@ -92,8 +92,17 @@ TEST_CASE("folds are told where they are, and a sheet that has passed through it
   run.self_crossings = 4;
   run.first_crossing = 0.0315;
   REQUIRE(pipeline::fold_warnings(none, run).size() == 1);
-  CHECK_THAT(pipeline::fold_warnings(none, run)[0],
-             Catch::Contains("passed through itself") && Catch::Contains("31.5 mm"));
+  CHECK_THAT(pipeline::fold_warnings(none, run)[0], Catch::Contains("passed through itself") &&
+                                                        Catch::Contains("31.5 mm") &&
+                                                        Catch::Contains("feels no contact with itself"));
+  // What is said of its contact is what it has.
+  CHECK_THAT(said[0], Catch::Contains("which it does not feel"));
+  macroscale::StampingSummary touching = run;
+  touching.self_contact.emplace().met = true;
+  const auto of_touching = pipeline::fold_warnings(folds, touching);
+  REQUIRE(of_touching.size() == 2);
+  CHECK_THAT(of_touching[0], Catch::Contains("did not hold"));
+  CHECK_THAT(of_touching[1], Catch::Contains("presses and rubs"));
 
   pipeline::SummaryRecord record;
   record.stamping = run;
