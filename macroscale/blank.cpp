@@ -175,7 +175,7 @@ class Trimming {
     Cell& taker = cells_[(i + side[0]) * nv_ + j + side[1]];
     if (taker.pieces.empty()) taker.pieces = {{{{0.0, 0.0}, {1.0, 0.0}, {1.0, 1.0}, {0.0, 1.0}}}};
     for (auto piece : giver.pieces) {
-      for (Point2& p : piece) p = {p[0] + side[0], p[1] + side[1]};
+      for (Point2& p : piece) p = {p[0] - side[0], p[1] - side[1]};
       taker.pieces.push_back(piece);
     }
     giver = Cell{};

@@ -54,8 +54,8 @@ CLI::App* add_check(CLI::App& program, CheckOptions& options) {
 }
 
 void add_export(CLI::App& program, ExportOptions& options) {
-  CLI::App* command =
-      program.add_subcommand("export", "The friction law, or the solid cell, as another program takes it");
+  CLI::App* command = program.add_subcommand(
+      "export", "The formed part, the friction law, or the solid cell, as another program takes it");
   command
       ->add_option("file", options.run.file,
                    "Configuration file (YAML), or the folder of a run or calibration")
@@ -63,11 +63,18 @@ void add_export(CLI::App& program, ExportOptions& options) {
   command
       ->add_option(
           "--to", options.target,
-          "abaqus: user subroutine FRIC_COEF; csv: table of mu; ccx: the solid cell as a CalculiX deck")
+          "ccx: the part of a stamping's folder as a CalculiX deck, of a file the solid cell; abaqus: user "
+          "subroutine FRIC_COEF, and of a folder the part; csv: table of mu")
       ->required()
       ->check(CLI::IsMember({"abaqus", "csv", "ccx"}));
   command->add_option("-o,--output", options.run.output,
                       "Folder of the file (default: DIR/export, out/export/NAME)");
+  command->add_option(
+      "--stress-free", options.stress_free,
+      "Of a part: temperature without stress, as '118 degC' (default: thermal.freezing_temperature)");
+  command->add_option(
+      "--room", options.room,
+      "Of a part: temperature it cools down to, as '25 degC' (default: thermal.air.temperature)");
   add_assignments(*command, options.run.assignments);
 }
 

@@ -48,6 +48,8 @@ struct DiscoverOptions {
 struct ExportOptions {
   RunOptions run;      ///< file: a configuration, or the folder of a run or a calibration
   std::string target;  ///< "abaqus", "csv" or "ccx"
+  /// Of a formed part: where it is free of stress, and what it cools down to, with unit; empty: by the case.
+  std::string stress_free = {}, room = {};
 };
 
 /// How a run ended.
@@ -69,7 +71,8 @@ int friction_case(const RunOptions& options);         ///< friction test only
 int calibrate_case(const CalibrateOptions& options);  ///< numbers of the law from measured coupons
 int discover_case(const DiscoverOptions& options);    ///< what the model misses in measured coupons
 int plan_coupons(const DiscoverOptions& options);     ///< what planned coupons could tell
-int export_case(const ExportOptions& options);        ///< friction law or solid cell as other programs take it
-int check_file(const CheckOptions& options);          ///< every problem, or the stages and notes
+int export_case(
+    const ExportOptions& options);  ///< friction law, solid cell or formed part as other programs take it
+int check_file(const CheckOptions& options);  ///< every problem, or the stages and notes
 
 }  // namespace heddle::pipeline

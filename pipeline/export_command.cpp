@@ -6,6 +6,8 @@
 #include "mesoscale/solid/ccx_deck.h"
 #include "pipeline/case.h"
 #include "pipeline/commands.h"
+#include "pipeline/export/part_command.h"
+#include "pipeline/export/part_folder.h"
 #include "pipeline/outputs.h"
 #include "pipeline/stages.h"
 
@@ -75,7 +77,16 @@ int export_cell(const ExportOptions& options, const Case& a_case, const fs::path
 int export_case(const ExportOptions& options) {
   const fs::path file = case_file(options.run.file);
   const Case a_case = read_case(file, options.run.assignments);
-  if (options.target == "ccx") return export_cell(options, a_case, file);
+  const bool of_stamping = fs::is_directory(options.run.file) && a_case.stamping.has_value();
+  if (options.target == "ccx")
+    return of_stamping ? export_part(options, a_case, folder_of(options, a_case))
+                       : export_cell(options, a_case, file);
+  if (of_stamping && options.target == "abaqus") {
+    if (hands_over_a_part(a_case))
+      export_part(options, a_case, folder_of(options, a_case));
+    else if (options.run.print)
+      fmt::print("No part: that takes `solid.shear_angles` and one ply; `--to ccx` says how.\n");
+  }
   if (!a_case.friction)
     throw InputError({{"export.friction"_rule, "friction", "", "is missing, and there is no law to export",
                        "Add `friction:`; configs/friction_test.yaml shows one.", file.string()}});

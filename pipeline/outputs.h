@@ -161,6 +161,10 @@ std::string summary_json(const SummaryRecord& record);
 /// without end, A, B and D of one ply with free faces. `iterations` lists the load cases of C, then of the
 /// ply.
 std::string stiffness_json(const mesoscale::solid::SolidResult& result);
+/// The plies at several trellis angles out of what stiffness_json wrote; numbers to a rounding.
+/// @param file  name for messages only
+/// @throws InputError  if it holds none, or something is missing
+std::vector<mesoscale::solid::ShearedSolid> read_sheared_json(std::string_view text, const std::string& file);
 /// A row an angle: A, B, D of the ply (upper halves, 1 = warp at every angle) and what it presses with where
 /// it is held flat, a kelvin and a unit of resin shrinkage.
 std::string sheared_csv(const std::vector<mesoscale::solid::ShearedSolid>& sheared);

@@ -64,7 +64,66 @@ Json sheared_json(const solid::ShearedSolid& s) {
   return row;
 }
 
+// The way back of rows_of.
+template <class Matrix>
+Matrix matrix_of(const Json& rows, double factor) {
+  Matrix matrix;
+  for (Eigen::Index i = 0; i < matrix.rows(); ++i)
+    for (Eigen::Index j = 0; j < matrix.cols(); ++j)
+      matrix(i, j) =
+          factor * rows.at(static_cast<std::size_t>(i)).at(static_cast<std::size_t>(j)).get<double>();
+  return matrix;
+}
+
+solid::Vector6 vector_of(const Json& row, double factor) {
+  solid::Vector6 v;
+  for (Eigen::Index i = 0; i < 6; ++i) v[i] = factor * row.at(static_cast<std::size_t>(i)).get<double>();
+  return v;
+}
+
+// {N, M} of the held ply.
+solid::Vector6 resultants_of(const Json& n, double factor, const Json& m) {
+  solid::Vector6 held;
+  for (Eigen::Index i = 0; i < 3; ++i) {
+    held[i] = factor * n.at(static_cast<std::size_t>(i)).get<double>();
+    held[3 + i] = m.at(static_cast<std::size_t>(i)).get<double>();
+  }
+  return held;
+}
+
+solid::ShearedSolid sheared_of(const Json& row) {
+  solid::ShearedSolid s;
+  s.shear_angle = row.at("shear_angle_deg").get<double>() * std::numbers::pi / 180.0;
+  s.thickness = 1e-3 * row.at("thickness_mm").get<double>();
+  s.fibre_fraction = row.at("tow_fibre_volume_fraction").get<double>();
+  s.converged = row.at("converged").get<bool>();
+  s.stack = matrix_of<solid::Matrix6>(row.at("C_MPa"), 1e6);
+  s.plate.topLeftCorner<3, 3>() = matrix_of<Eigen::Matrix3d>(row.at("A_N_per_mm"), 1e3);
+  s.plate.topRightCorner<3, 3>() = matrix_of<Eigen::Matrix3d>(row.at("B_N"), 1.0);
+  s.plate.bottomLeftCorner<3, 3>() = s.plate.topRightCorner<3, 3>().transpose();
+  s.plate.bottomRightCorner<3, 3>() = matrix_of<Eigen::Matrix3d>(row.at("D_N_mm"), 1e-3);
+  s.plate_held[solid::expansion] =
+      resultants_of(row.at("N_expansion_N_per_mm_K"), 1e3, row.at("M_expansion_N_per_K"));
+  s.plate_held[solid::shrinkage] =
+      resultants_of(row.at("N_shrinkage_N_per_mm"), 1e3, row.at("M_shrinkage_N"));
+  s.stack_held[solid::expansion] = vector_of(row.at("stress_expansion_MPa_per_K"), 1e6);
+  s.stack_held[solid::shrinkage] = vector_of(row.at("stress_shrinkage_MPa"), 1e6);
+  return s;
+}
+
 }  // namespace
+
+std::vector<solid::ShearedSolid> read_sheared_json(std::string_view text, const std::string& file) {
+  std::vector<solid::ShearedSolid> sheared;
+  try {
+    const Json root = Json::parse(text);
+    for (const Json& row : root.at("sheared")) sheared.push_back(sheared_of(row));
+  } catch (const Json::exception& error) {
+    throw InputError({{"stiffness.file"_rule, "sheared", "", fmt::format("cannot be read: {}", error.what()),
+                       "Make the file anew: `heddle run` with `solid.shear_angles` writes it.", file}});
+  }
+  return sheared;
+}
 
 std::string stiffness_json(const mesoscale::solid::SolidResult& result) {
   Json root{{"order", {"11", "22", "33", "23", "13", "12"}}, {"scaling", "voigt"}};

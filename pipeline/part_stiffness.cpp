@@ -18,6 +18,7 @@ namespace heddle::pipeline {
 namespace {
 
 using Eigen::Vector3d;
+using mesoscale::solid::expansion;
 using mesoscale::solid::ShearedSolid;
 
 // Each number of the table as a smooth curve over the trellis angle.
@@ -40,12 +41,17 @@ class Table {
       return Curve(x, y);
     };
     thickness_ = curve([](const ShearedSolid& row) { return row.thickness; });
+    fibre_fraction_ = curve([](const ShearedSolid& row) { return row.fibre_fraction; });
     for (int i = 0; i < 6; ++i) {
-      for (int j = 0; j < 6; ++j)
-        plate_[static_cast<std::size_t>(6 * i + j)] =
+      const auto k = static_cast<std::size_t>(i);
+      for (int j = 0; j < 6; ++j) {
+        plate_[6 * k + static_cast<std::size_t>(j)] =
             curve([&](const ShearedSolid& row) { return row.plate(i, j); });
-      held_[static_cast<std::size_t>(i)] =
-          curve([&](const ShearedSolid& row) { return row.plate_held[0][i]; });
+        stack_[6 * k + static_cast<std::size_t>(j)] =
+            curve([&](const ShearedSolid& row) { return row.stack(i, j); });
+      }
+      held_[k] = curve([&](const ShearedSolid& row) { return row.plate_held[expansion][i]; });
+      stack_held_[k] = curve([&](const ShearedSolid& row) { return row.stack_held[expansion][i]; });
     }
   }
 
@@ -55,20 +61,27 @@ class Table {
     const double angle = std::clamp(wanted, low_, high_);
     cell.beyond_table = wanted != angle;
     cell.thickness = thickness_(angle);
-    // 16, 26 and what stands for them in B and D are odd in a mirror.
+    cell.tow_fibre_fraction = fibre_fraction_(angle);
+    // 16, 26 and what stands for them in B and D are odd in a mirror; of a solid whatever has one axis 2.
     const auto sign = [&](int i, int j) { return mirrored && (i % 3 == 2) != (j % 3 == 2) ? -1.0 : 1.0; };
+    const auto odd = [](int i) { return i == 3 || i == 5; };
+    const auto solid_sign = [&](int i, int j) { return mirrored && odd(i) != odd(j) ? -1.0 : 1.0; };
     for (int i = 0; i < 6; ++i) {
-      for (int j = 0; j < 6; ++j)
-        cell.plate(i, j) = sign(i, j) * plate_[static_cast<std::size_t>(6 * i + j)](angle);
-      cell.expansion[i] = sign(i, 0) * held_[static_cast<std::size_t>(i)](angle);
+      const auto k = static_cast<std::size_t>(i);
+      for (int j = 0; j < 6; ++j) {
+        cell.plate(i, j) = sign(i, j) * plate_[6 * k + static_cast<std::size_t>(j)](angle);
+        cell.stack(i, j) = solid_sign(i, j) * stack_[6 * k + static_cast<std::size_t>(j)](angle);
+      }
+      cell.expansion[i] = sign(i, 0) * held_[k](angle);
+      cell.stack_held[i] = solid_sign(i, 0) * stack_held_[k](angle);
     }
   }
 
  private:
   double low_ = 0.0, high_ = 0.0;
-  Curve thickness_;
-  std::array<Curve, 36> plate_;
-  std::array<Curve, 6> held_;
+  Curve thickness_, fibre_fraction_;
+  std::array<Curve, 36> plate_, stack_;
+  std::array<Curve, 6> held_, stack_held_;
 };
 
 std::array<double, 3> array_of(const Vector3d& v) {
@@ -89,6 +102,7 @@ CellStiffness cell_of(const macroscale::BlankState& blank, const std::array<int,
   cell.cell = blank.grid[static_cast<std::size_t>(quad[0])];
   cell.centre = array_of(0.25 * (p[0] + p[1] + p[2] + p[3]));
   cell.warp = array_of(warp);
+  cell.weft = array_of(weft);
   cell.normal = array_of(warp.cross(weft).normalized());
   cell.shear_angle = std::asin(std::clamp(warp.dot(weft), -1.0, 1.0));
   return cell;
@@ -112,7 +126,7 @@ std::string part_stiffness_csv(const std::vector<CellStiffness>& cells) {
   constexpr std::array<const char*, 6> names{"11", "12", "16", "22", "26", "66"};
   std::string out =
       "cell_warp,cell_weft,x_mm,y_mm,z_mm,warp_x,warp_y,warp_z,normal_x,normal_y,normal_z,shear_angle_deg,"
-      "beyond_table,thickness_mm,crystallised_share";
+      "beyond_table,thickness_mm,crystallised_share,weft_x,weft_y,weft_z,tow_fibre_volume_fraction";
   for (const auto& [part, unit] : {std::pair{"A", "N_per_mm"}, {"B", "N"}, {"D", "N_mm"}})
     for (const char* name : names) out += fmt::format(",{}{}_{}", part, name, unit);
   for (const auto& [part, unit] : {std::pair{"N", "N_per_mm_K"}, {"M", "N_K"}})
@@ -128,6 +142,8 @@ std::string part_stiffness_csv(const std::vector<CellStiffness>& cells) {
     out += c.beyond_table ? ",1" : ",0";
     add(1e3 * c.thickness);
     add(c.crystallised);
+    for (const double x : c.weft) add(x);
+    add(c.tow_fibre_fraction);
     for (const auto& [row, column, factor] : {std::tuple{0, 0, 1e-3}, {0, 3, 1.0}, {3, 3, 1e3}})
       for (const auto& [i, j] : upper) add(factor * c.plate(row + i, column + j));
     for (int i = 0; i < 6; ++i) add((i < 3 ? 1e-3 : 1.0) * c.expansion[i]);

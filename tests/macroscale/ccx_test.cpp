@@ -1,64 +1,18 @@
 // The same net and the same strip by CalculiX: another code's large displacements.
-#include <unistd.h>
-
 #include <array>
 #include <catch2/catch.hpp>
 #include <cmath>
-#include <cstdlib>
-#include <filesystem>
-#include <fstream>
-#include <map>
-#include <sstream>
 #include <string>
 
 #include <fmt/format.h>
 
-#include "core/text_file.h"
+#include "tests/ccx_run.h"
 #include "tests/macroscale/diagonal_net.h"
 #include "tests/macroscale/hanging_strip.h"
 
-namespace fs = std::filesystem;
 using namespace heddle::test;
 
 namespace {
-
-using Vectors = std::map<int, std::array<double, 3>>;  // by node
-
-bool ccx_is_there() {
-  if (std::system("command -v ccx >/dev/null 2>&1") == 0) return true;
-  WARN("ccx is not installed (package calculix-ccx): nothing was compared");
-  return false;
-}
-
-// The last table of a quantity in what CalculiX prints: a head that names it, an empty line, a line a node.
-Vectors last_table(const std::string& dat, const std::string& quantity) {
-  std::istringstream lines(dat.substr(dat.rfind(quantity)));
-  std::string line;
-  std::getline(lines, line);
-  std::getline(lines, line);
-  Vectors rows;
-  while (std::getline(lines, line)) {
-    std::istringstream fields(line);
-    int node = 0;
-    std::array<double, 3> v{};
-    if (!(fields >> node >> v[0] >> v[1] >> v[2])) break;
-    rows[node] = v;
-  }
-  return rows;
-}
-
-std::string run_ccx(const std::string& deck) {
-  const fs::path folder = fs::temp_directory_path() / fmt::format("heddle-ccx-macro-{}", getpid());
-  fs::create_directories(folder);
-  std::ofstream(folder / "case.inp") << deck;
-  const int code =
-      std::system(("cd '" + folder.string() + "' && OMP_NUM_THREADS=1 ccx -i case >ccx.log 2>&1").c_str());
-  INFO(heddle::read_text_file(folder / "ccx.log"));
-  REQUIRE(code == 0);
-  std::string dat = heddle::read_text_file(folder / "case.dat");
-  fs::remove_all(folder);
-  return dat;
-}
 
 // Tows and diagonals of n x n cells as springs, the rim driven as a picture frame in equal turns.
 std::string net_deck(int n, double side, double k, double angle) {

@@ -110,6 +110,10 @@ TEST_CASE("each subcommand reaches its function", "[pipeline][command_line]") {
   CHECK(record.called == "export");
   CHECK(record.exported.run.file == "out/x");
   CHECK(record.exported.target == "abaqus");
+  CHECK(call({"export", "out/x", "--to", "ccx", "--stress-free", "120 degC", "--room", "20 degC"}, record) ==
+        10);
+  CHECK(record.exported.stress_free == "120 degC");
+  CHECK(record.exported.room == "20 degC");
 }
 
 TEST_CASE("a faulty interval in the environment is refused", "[pipeline][command_line]") {

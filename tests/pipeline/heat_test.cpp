@@ -47,6 +47,9 @@ std::vector<mesoscale::solid::ShearedSolid> table() {
     for (int i = 0; i < 6; ++i)
       for (int j = 0; j < 6; ++j) rows[k].plate(i, j) = 1.0 + i + j + 10.0 * static_cast<double>(k);
     for (int i = 0; i < 6; ++i) rows[k].plate_held[0][i] = 1.0 + i + static_cast<double>(k);
+    rows[k].fibre_fraction = 0.6 - 0.05 * static_cast<double>(k);
+    rows[k].stack = rows[k].plate;
+    rows[k].stack_held[0] = rows[k].plate_held[0];
   }
   return rows;
 }
@@ -64,6 +67,9 @@ TEST_CASE("a cell of the part has the stiffness of its trellis angle, in axes al
   CHECK(cell.thickness == Approx(0.44e-3));
   CHECK((cell.plate - table()[1].plate).cwiseAbs().maxCoeff() < 1e-9);
   CHECK(cell.warp[0] == Approx(1.0));
+  CHECK(cell.weft[0] == Approx(std::sin(0.3)));
+  CHECK(cell.weft[1] == Approx(std::cos(0.3) * std::cos(turn)));
+  CHECK(cell.tow_fibre_fraction == Approx(0.55));
   CHECK(cell.normal[1] == Approx(-std::sin(turn)));
   CHECK(cell.normal[2] == Approx(std::cos(turn)));
 }
@@ -78,6 +84,13 @@ TEST_CASE("a cell sheared the other way is the mirror image: what couples shear 
       const bool odd = (i % 3 == 2) != (j % 3 == 2);
       CHECK(cell.plate(i, j) == Approx(odd ? -of(i, j) : of(i, j)));
     }
+  // Of the solid, in the order 11, 22, 33, 23, 13, 12, whatever has the axis 2 once.
+  for (int i = 0; i < 6; ++i)
+    for (int j = 0; j < 6; ++j) {
+      const bool odd = (i == 3 || i == 5) != (j == 3 || j == 5);
+      CHECK(cell.stack(i, j) == Approx(odd ? -of(i, j) : of(i, j)));
+    }
+  CHECK(cell.stack_held[3] == Approx(-table()[1].stack_held[0][3]));
   CHECK(cell.expansion[2] == Approx(-table()[1].plate_held[0][2]));
   CHECK(cell.expansion[1] == Approx(table()[1].plate_held[0][1]));
 }

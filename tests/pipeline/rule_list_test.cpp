@@ -169,6 +169,8 @@ const char* const of_design = "pipeline/discover/plan_test.cpp";
 const char* const of_discovery = "pipeline/discover/discovery_test.cpp";
 const char* const of_effects = "pipeline/discover/effects_test.cpp";
 const char* const of_texgen = "mesoscale/solid/texgen_test.cpp";
+const char* const part_refusals =
+    "a part that cannot go out is refused with what is missing and the command that makes it";
 const char* const of_outline = "macroscale/outline_test.cpp";
 
 const std::vector<Elsewhere> elsewhere{
@@ -404,6 +406,17 @@ const std::vector<Elsewhere> elsewhere{
     {"export.solid", "pipeline/study_test.cpp",
      "a solid cell goes out as a CalculiX deck, and without one the way out is named",
      "of a command, not of a configuration"},
+    {"export.part.stamping", "pipeline/part_folder_test.cpp", part_refusals,
+     "of a command, not of a configuration"},
+    {"export.part.damaged", "pipeline/part_folder_test.cpp", part_refusals,
+     "of a command, not of a configuration"},
+    {"export.part.plies", "pipeline/part_folder_test.cpp", part_refusals,
+     "of a command, not of a configuration"},
+    {"export.part.solid", "pipeline/part_folder_test.cpp", part_refusals,
+     "of a command, not of a configuration"},
+    {"export.temperature", "pipeline/part_folder_test.cpp", part_refusals,
+     "of a command, not of a configuration"},
+    {"stiffness.file", "pipeline/part_folder_test.cpp", part_refusals, "of a file that a run wrote"},
     {"cell.voxels.file.box", of_texgen,
      "a deck that is none is refused with the rule it breaks and the place",
      "of what the deck holds; texgen_deck.yaml breaks the first of these rules"},

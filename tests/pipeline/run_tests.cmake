@@ -1,6 +1,6 @@
 heddle_test(run SOURCES run_test.cpp effects_test.cpp calibrate_test.cpp solid_test.cpp units_run_test.cpp weaves_test.cpp
             LIBRARIES heddle::run nlohmann_json::nlohmann_json)
-heddle_test(heat SOURCES heat_test.cpp LIBRARIES heddle::run nlohmann_json::nlohmann_json)
+heddle_test(heat SOURCES heat_test.cpp part_folder_test.cpp LIBRARIES heddle::run nlohmann_json::nlohmann_json)
 heddle_test(study SOURCES study_test.cpp stamping_study_test.cpp indicator_outputs_test.cpp LIBRARIES heddle::run)
 heddle_test(discover_report SOURCES discover_report_test.cpp LIBRARIES heddle::run)
 # Runs that are killed, stopped, reused and listed; some through the built program.

@@ -1,24 +1,18 @@
 // The cell as a CalculiX deck: ccx runs it as it is, and finds the stiffness that ours does.
 #include "mesoscale/solid/ccx_deck.h"
 
-#include <unistd.h>
-
 #include <catch2/catch.hpp>
 #include <cstdio>
-#include <cstdlib>
-#include <filesystem>
-#include <fstream>
 #include <stdexcept>
 
 #include "core/problem.h"
-#include "core/text_file.h"
 #include "mesoscale/solid/sampler.h"
 #include "sample_cells.h"
+#include "tests/ccx_run.h"
 
 using namespace heddle;
 using namespace heddle::mesoscale;
 using namespace heddle::mesoscale::solid;
-namespace fs = std::filesystem;
 
 namespace {
 
@@ -43,36 +37,16 @@ Eigen::Matrix3d edges_at(double angle) {
       .edges;
 }
 
-bool ccx_is_there() {
-  return std::system("command -v ccx >/dev/null 2>&1") == 0;
-}
-
-// Runs ccx in a folder of its own; the stiffness it finds.
-Matrix6 run_ccx(const std::string& deck, const Eigen::Matrix3d& edges) {
-  const fs::path folder = fs::temp_directory_path() / ("heddle-ccx-test-" + std::to_string(getpid()));
-  fs::create_directories(folder);
-  std::ofstream(folder / "cell.inp") << deck;
-  const int code =
-      std::system(("cd '" + folder.string() + "' && OMP_NUM_THREADS=1 ccx -i cell >ccx.log 2>&1").c_str());
-  INFO(read_text_file(folder / "ccx.log"));
-  CHECK(code == 0);
-  const std::string dat = read_text_file(folder / "cell.dat");
-  fs::remove_all(folder);
-  return stiffness_from_ccx(dat, "cell.dat", edges);
-}
-
 }  // namespace
 
 TEST_CASE("CalculiX runs the deck of a woven cell as it is and finds the same stiffness", "[solid][ccx]") {
-  if (!ccx_is_there()) {
-    WARN("ccx is not installed (package calculix-ccx): the deck was not run");
-    return;
-  }
+  if (!heddle::test::ccx_is_there()) return;
   const double angle = GENERATE(0.0, 0.4);
   SolidSpec spec = coarse(6, 6);
   spec.shear_angles = {angle};
   const Matrix6 ours = analyse(WeaveSpec{}, spec).sheared[0].stack;
-  const Matrix6 theirs = run_ccx(ccx_deck(WeaveSpec{}, angle, spec), edges_at(angle));
+  const std::string dat = heddle::test::run_ccx(ccx_deck(WeaveSpec{}, angle, spec));
+  const Matrix6 theirs = stiffness_from_ccx(dat, "case.dat", edges_at(angle));
   const double off = heddle::test::gap(theirs, ours);
   std::printf("CalculiX against our solver, %.1f rad of shear: |dC|/|C| = %.2e, C11 %.2f and %.2f MPa\n",
               angle, off, 1e-6 * theirs(0, 0), 1e-6 * ours(0, 0));
