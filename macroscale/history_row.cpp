@@ -6,6 +6,7 @@
 
 #include "macroscale/folds.h"
 #include "macroscale/quality.h"
+#include "macroscale/whole_blank.h"
 
 namespace heddle::macroscale {
 
@@ -67,7 +68,12 @@ void measure_blank(HistoryRow& row, const BlankState& blank, const State& state,
   row.tow_strain_max = 0.0;
   for (const auto& strain : blank.tow_strain)
     row.tow_strain_max = std::max({row.tow_strain_max, strain[0], strain[1]});
-  const Folds folds = find_folds(blank, scene.fabric->thickness);
+  const double thickness = scene.fabric->thickness;
+  const Symmetry symmetry = scene.blank.symmetry;
+  const Folds folds =
+      symmetry == Symmetry::none
+          ? find_folds(blank, thickness)
+          : find_folds(whole_of(blank, symmetry, std::abs(scene.blank.warp[0]) > 0.5).state, thickness);
   row.folded_nodes = folds.folded;
   row.near_nodes = folds.near;
   row.self_crossings = folds.crossings;

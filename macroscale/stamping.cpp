@@ -18,6 +18,7 @@
 #include "macroscale/stack.h"
 #include "macroscale/stamping_scene.h"
 #include "macroscale/system.h"
+#include "macroscale/whole_blank.h"
 
 namespace heddle::macroscale {
 
@@ -77,6 +78,18 @@ void describe_iterate(StampingFailure& failure, const System& system, const Step
   }
 }
 
+// A piece's failure in the blank that its files show. Worst nodes keep their places, which are in the piece.
+void show_whole(StampingFailure& failure, const BlankSpec& spec) {
+  WholeBlank whole = whole_of(failure.blank, spec);
+  std::vector<double> residual;
+  for (const int n : whole.node) residual.push_back(failure.residual[static_cast<std::size_t>(n)]);
+  for (StampingFailure::Unknown& unknown : failure.worst)
+    for (std::size_t n = 0; n < whole.node.size(); ++n)
+      if (unknown.position == whole.state.position[n]) unknown.name = fmt::format("node {}", n);
+  failure.blank = std::move(whole.state);
+  failure.residual = std::move(residual);
+}
+
 // Whether the press has the eight symmetries of the square that a blank may have.
 bool is_symmetric(const StampingSpec& spec) {
   const PressSpec& press = spec.process.press;
@@ -107,7 +120,8 @@ void take_over(StampingResult& result, const StampingSpec& spec, const Blank& bl
   result.history = std::move(at.history);
   result.hold = std::move(at.hold);
   s.release = std::move(at.release);
-  result.final_state = std::move(at.blank);
+  result.final_state =
+      spec.blank.symmetry == Symmetry::none ? std::move(at.blank) : whole_of(at.blank, spec.blank).state;
   summarise(result, blank, at.state, at.peak_force_balance);
   if (!is_symmetric(spec)) s.symmetry_gap_shear = s.symmetry_gap_draw_in = -1.0;
 }
@@ -291,9 +305,17 @@ class Run {
 
   // The observer comes first: what it writes belongs to the step that a checkpoint says is done.
   void show_and_keep() {
-    if (control_.observe) control_.observe(now_.step, all_steps(spec_.process), now_.row, now_.blank);
+    if (control_.observe) show();
     whole_ = now_;
     keep(now_, false);
+  }
+
+  void show() const {
+    const int steps = all_steps(spec_.process);
+    if (spec_.blank.symmetry == Symmetry::none)
+      control_.observe(now_.step, steps, now_.row, now_.blank);
+    else
+      control_.observe(now_.step, steps, now_.row, whole_of(now_.blank, spec_.blank).state);
   }
 
   void keep(const StampingCheckpoint& checkpoint, bool last) const {
@@ -319,7 +341,7 @@ class Run {
     }
     const StepAccount books = account(system_, attempt_, end);
     add_to_history(now_.row, books, scene_);
-    now_.pairing += std::abs(books.ledger.pairing);
+    now_.pairing += images(scene_.blank.symmetry) * std::abs(books.ledger.pairing);
     now_.peak_pressure = std::max(now_.peak_pressure, largest_pressure(system_, attempt_, end));
     if (summary.swings) now_.peak_swing = std::max(now_.peak_swing, summary.lag_residual);
     now_.falling_branch |= on_falling_branch(system_, attempt_, end);
@@ -366,6 +388,7 @@ class Run {
       try {
         failure.blank = blank_state(system_, state_at_iterate(system_, attempt_), nullptr);
         describe_iterate(failure, system_, attempt_);
+        if (spec_.blank.symmetry != Symmetry::none) show_whole(failure, spec_.blank);
       } catch (const NumericalError& error) {  // the law itself has no value there: that is worth saying
         failure.not_finite.push_back(error.what());
       }

@@ -97,6 +97,9 @@ Problems check_symmetry(const StampingSpec& spec) {
               fmt::format("is {:g} deg: on a plane of symmetry tows must run along it or straight across",
                           blank.orientation * 180.0 / std::numbers::pi),
               "0 or 90 deg. " + whole);
+  f.refuse_if(blank.turned != 0.0, "blank.symmetry.turned"_rule, "effects.initial_orientation.angle",
+              "must be 0 in a part of which a piece is computed: a blank laid down askew has no plane of it",
+              whole);
   f.refuse_if(blank.plies > 1, "blank.symmetry.plies"_rule, "blank.plies",
               "must be 1 in a part of which a piece is computed: contact of plies does not know the planes",
               "One ply. " + whole);

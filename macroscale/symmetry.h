@@ -6,7 +6,8 @@ namespace heddle::macroscale {
 
 /// Which piece of a part that is its own mirror image is computed: all of it, what lies at x >= 0 (half_x) or
 /// at y >= 0 (half_y), or where both hold (quarter). Nodes on a plane of symmetry stay in it. Forces,
-/// energies and heat of a run are those of the whole part; fields, frames and node counts those of the piece.
+/// energies, heat, frames and fields that a run gives are those of the whole part; node counts are the
+/// piece's.
 enum class Symmetry { none, half_x, half_y, quarter };
 
 /// Whether the plane across an axis, x = 0 (axis 0) or y = 0 (axis 1), is one of symmetry.

@@ -21,8 +21,7 @@ constexpr double degrees = 180.0 / std::numbers::pi;
 std::string piece_in_words(macroscale::Symmetry symmetry) {
   if (symmetry == macroscale::Symmetry::none) return "";
   return fmt::format(
-      " One {} of it is computed and shown, on its planes of symmetry; forces, energies and heat are those "
-      "of the whole.",
+      " One {} of it is computed, on its planes of symmetry; all that is shown is of the whole.",
       symmetry == macroscale::Symmetry::quarter ? "quarter" : "half");
 }
 

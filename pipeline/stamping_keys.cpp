@@ -119,7 +119,7 @@ std::vector<Key> blank_keys() {
       {.path = "blank.symmetry", .type = KeyType::choice, .presence = defaulted, .default_text = "none",
        .choices = {"none", "half_x", "half_y", "quarter"}, .stage = stamping,
        .help = "Piece of a symmetric part that is computed: the half at x >= 0, at y >= 0, or the quarter of both. "
-               "Forces and energies are those of the whole, frames show the piece."},
+               "Forces, energies and frames are those of the whole."},
       {.path = "blank.grid_error", .type = KeyType::choice, .presence = defaulted, .default_text = "on",
        .choices = {"on", "off"}, .stage = Stage::grid_error,
        .help = "on: the case is run once more on twice the spacing, for the error that the grid leaves in force, "

@@ -5,6 +5,7 @@
 
 #include <fmt/format.h>
 
+#include "macroscale/whole_blank.h"
 #include "mesoscale/cell.h"
 #include "pipeline/outputs.h"
 #include "pipeline/stamping_record.h"
@@ -78,7 +79,8 @@ FormedPart read_formed_part(const fs::path& folder, const Case& a_case) {
          folder.string()});
   const std::optional<StampingRecord> record = record_in(folder, problems);
   if (!problems.empty()) throw InputError(std::move(problems));
-  return {record->at.blank, read_sheared_json(read_file(stiffness), stiffness.string()),
+  return {macroscale::whole_of(record->at.blank, a_case.stamping->blank).state,
+          read_sheared_json(read_file(stiffness), stiffness.string()),
           mesoscale::fabric_geometry(*a_case.cell).mass.areal_density};
 }
 

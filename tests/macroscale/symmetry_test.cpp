@@ -2,10 +2,8 @@
 #include <catch2/catch.hpp>
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <functional>
-#include <map>
 #include <numbers>
 #include <optional>
 
@@ -59,20 +57,36 @@ double gap(const std::vector<HistoryRow>& a, const std::vector<HistoryRow>& b, C
   return gap;
 }
 
-/// Largest distance of the piece's nodes from those of the whole, over the largest way of one.
-double shape_gap(const BlankState& whole, const BlankState& piece) {
-  std::map<std::array<int, 2>, std::size_t> at;
-  for (std::size_t n = 0; n < whole.grid.size(); ++n) at[whole.grid[n]] = n;
-  double gap = 0.0, way = 0.0;
-  for (std::size_t n = 0; n < piece.grid.size(); ++n) {
-    const std::size_t m = at.at(piece.grid[n]);
-    REQUIRE(std::abs(whole.reference[m][0] - piece.reference[n][0]) < 1e-12);
-    REQUIRE(std::abs(whole.reference[m][1] - piece.reference[n][1]) < 1e-12);
-    const Vector3d x(whole.position[m].data()), y(piece.position[n].data());
+/// Same nodes, cells and edge; places and fields within a share of their sizes.
+void check_alike(const BlankState& whole, const BlankState& mirrored, double share) {
+  CHECK(mirrored.grid == whole.grid);
+  CHECK(mirrored.quads == whole.quads);
+  REQUIRE(mirrored.position.size() == whole.position.size());
+  REQUIRE(mirrored.pieces.size() == whole.pieces.size());
+  double gap = 0.0, way = 0.0, shear = 0.0, shear_gap = 0.0, pressure = 0.0, pressure_gap = 0.0;
+  for (std::size_t n = 0; n < whole.grid.size(); ++n) {
+    const Vector3d x(whole.position[n].data()), y(mirrored.position[n].data());
     gap = std::max(gap, (x - y).norm());
-    way = std::max(way, (x - Vector3d(whole.reference[m][0], whole.reference[m][1], 0.0)).norm());
+    way = std::max(way, (x - Vector3d(whole.reference[n][0], whole.reference[n][1], 0.0)).norm());
+    CHECK(std::hypot(whole.reference[n][0] - mirrored.reference[n][0],
+                     whole.reference[n][1] - mirrored.reference[n][1]) < 1e-12);
+    shear = std::max(shear, std::abs(whole.shear_angle[n]));
+    shear_gap = std::max(shear_gap, std::abs(whole.shear_angle[n] - mirrored.shear_angle[n]));
+    pressure = std::max(pressure, whole.pressure[n]);
+    pressure_gap = std::max(pressure_gap, std::abs(whole.pressure[n] - mirrored.pressure[n]));
   }
-  return gap / way;
+  CHECK(gap < share * way);
+  CHECK(shear_gap < 10.0 * share * shear);
+  CHECK(pressure_gap <= 100.0 * share * pressure);  // steep: a contact slope times a place
+  double cut = 0.0, cut_mirrored = 0.0;
+  for (std::size_t k = 0; k < whole.pieces.size(); ++k) {
+    CHECK(mirrored.pieces[k].quad == whole.pieces[k].quad);
+    const auto ring = [](const CellPiece& p) { return Ring(p.corners.begin(), p.corners.end()); };
+    cut += area({ring(whole.pieces[k]), {}});
+    cut_mirrored += area({ring(mirrored.pieces[k]), {}});
+  }
+  CHECK(cut_mirrored == Approx(cut).margin(1e-9));
+  CHECK(mirrored.edge.size() == whole.edge.size());
 }
 
 StampingResult run(StampingSpec spec, Symmetry symmetry,
@@ -102,7 +116,7 @@ void check_whole(const StampingResult& whole, const StampingResult& piece, doubl
   within(forces, whole.summary.peak_punch_force);
   within(energies, whole.history.back().work_punch);
   within(measures, 0.0);
-  CHECK(shape_gap(whole.final_state, piece.final_state) < share);
+  check_alike(whole.final_state, piece.final_state, share);
   for (std::size_t ray = 0; ray < 8; ++ray)
     CHECK(piece.summary.draw_in_rays[ray] == Approx(whole.summary.draw_in_rays[ray]).epsilon(1e-5));
   CHECK(piece.summary.energy_residual_max < 0.01);
