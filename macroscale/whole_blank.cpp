@@ -48,6 +48,14 @@ CellPiece image_of(CellPiece piece, const Image& image, int quad) {
   return piece;
 }
 
+/// Whether a point of the edge lies on a plane across which it is turned over: there once is enough.
+bool is_own_image(const EdgeState& edge, const Image& image) {
+  constexpr double rounding = 1e-12;  // [m]
+  for (std::size_t axis = 0; axis < 2; ++axis)
+    if (image.axis[axis] && std::abs(edge.reference[axis]) < rounding) return true;
+  return false;
+}
+
 /// What stands at each place of a grid: the number in the piece, and the image that puts it there.
 struct Source {
   int number = -1;
@@ -128,10 +136,9 @@ WholeBlank whole_of(const BlankState& piece, Symmetry symmetry, bool warp_along_
     s.quads.push_back({node(i, j), node(i + 1, j), node(i + 1, j + 1), node(i, j + 1)});
   }
   for (const Image& image : images)
-    for (const EdgeState& edge : piece.edge) {
-      const EdgeState other{image_of(edge.reference, image), image_of(edge.position, image), edge.draw_in};
-      if (&image == &images.front() || other.reference != edge.reference) s.edge.push_back(other);
-    }
+    for (const EdgeState& edge : piece.edge)
+      if (!is_own_image(edge, image))
+        s.edge.push_back({image_of(edge.reference, image), image_of(edge.position, image), edge.draw_in});
   std::stable_sort(s.edge.begin(), s.edge.end(), [](const EdgeState& a, const EdgeState& b) {
     return std::atan2(a.reference[1], a.reference[0]) < std::atan2(b.reference[1], b.reference[0]);
   });
