@@ -122,7 +122,6 @@ std::vector<double> nodal_pressure(const System& system, const StepData& step, i
 
 LagChange lag_change(const System& system, const StepData& step, const VectorXd& x,
                      const FrictionPoints& before, const FrictionPoints& after) {
-  const FrictionSettings settings = system.friction_settings();
   struct Sums {
     double change = 0.0, size = 0.0, largest = 0.0;
     Sums operator+(const Sums& b) const {
@@ -132,6 +131,7 @@ LagChange lag_change(const System& system, const StepData& step, const VectorXd&
   const auto of_point = [&](int k, int i) {
     const FrictionPoint &old = before[k][i], &now = after[k][i];
     if (old.load == 0.0 && now.load == 0.0) return Sums{};
+    const FrictionSettings settings = system.friction_settings(k);
     const Vector3d v = system.velocity_in_row(step, x, k, i);
     const auto force = [&](const FrictionPoint& p) -> Vector3d {
       return p.load > 0.0 ? friction_force(settings, p, v) : Vector3d::Zero();

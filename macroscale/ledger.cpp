@@ -126,8 +126,8 @@ void account_plies(const System& system, const StepData& step, const State& end,
   if (system.ply_points().empty()) return;
   const Scene& scene = system.scene();
   const State& start = *step.start;
-  const FrictionSettings settings = system.friction_settings();
   const int row = static_cast<int>(scene.tools.size());
+  const FrictionSettings settings = system.friction_settings(row);
   Increment held;
   double rubbed = 0.0, met = 0.0;
   for (std::size_t k = 0; k < step.pairs.size(); ++k) {
@@ -144,7 +144,7 @@ void account_plies(const System& system, const StepData& step, const State& end,
     rubbed += work;
     friction::Context context = point.context;
     context.slip_speed = slip_velocity(point, v).norm();
-    if (!scene.friction->box.contains(context, law_at(settings, point, context.slip_speed).hersey))
+    if (!settings.model->box.contains(context, law_at(settings, point, context.slip_speed).hersey))
       ledger.friction_outside += work;
   }
   for (const PlyPair& pair : system.pairs_at(end.x))
@@ -191,7 +191,6 @@ StepAccount account(const System& system, const StepData& step, const State& end
     if (k < 3 * blank.nodes()) momentum_rate[k % 3] += m * (v1 - v0) / step.dt;
   }
 
-  const FrictionSettings settings = system.friction_settings();
   Vector3d on_blank = Vector3d::Zero();
   Increment compaction;
   // Compaction holds the trellis angle of the start; what is stored in the end is of the angle reached. The
@@ -210,6 +209,7 @@ StepAccount account(const System& system, const StepData& step, const State& end
   for (int k = 0; k < static_cast<int>(scene.tools.size()); ++k) {
     Vector3d on_tool = Vector3d::Zero();
     double rubbed = 0.0;
+    const FrictionSettings settings = system.friction_settings(k);
     const double z0 = system.tool_position(start, k), z1 = system.tool_position(end, k);
     const double tool_motion = z1 - z0;
     for (int i = 0; i < system.contacts(); ++i) {
@@ -231,7 +231,7 @@ StepAccount account(const System& system, const StepData& step, const State& end
         const double hersey = law_at(settings, point, slip_velocity(point, v).norm()).hersey;
         friction::Context context = point.context;
         context.slip_speed = slip_velocity(point, v).norm();
-        if (!scene.friction->box.contains(context, hersey)) ledger.friction_outside += work;
+        if (!settings.model->box.contains(context, hersey)) ledger.friction_outside += work;
         gradient += drag;
       }
       on_tool += gradient;

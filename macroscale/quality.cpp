@@ -118,7 +118,7 @@ void add_contacts_at_nodes(const System& system, const State& state, const StepD
       const FrictionPoint& point = step.friction[k][i];
       if (point.context.pressure <= blank.pressure[i] || point.load == 0.0) continue;
       const double speed = slip_velocity(point, system.relative_velocity(step, state.x, k, i)).norm();
-      const auto law = law_at(system.friction_settings(), point, speed);
+      const auto law = law_at(system.friction_settings(k), point, speed);
       blank.pressure[i] = point.context.pressure;
       blank.slip_speed[i] = speed;
       blank.friction_coefficient[i] = law.mu;
@@ -142,7 +142,7 @@ void add_contacts_in_cells(const System& system, const State& state, const StepD
       for (std::size_t a = 0; a < 4; ++a) sums[at.node[a]].area += at.weight[a] * area;
       if (point.load == 0.0) continue;
       const double speed = slip_velocity(point, system.relative_velocity(step, state.x, k, i)).norm();
-      const auto law = law_at(system.friction_settings(), point, speed);
+      const auto law = law_at(system.friction_settings(k), point, speed);
       for (std::size_t a = 0; a < 4; ++a) {
         Sum& sum = sums[at.node[a]];
         const double load = at.weight[a] * point.load;
@@ -247,7 +247,7 @@ bool on_falling_branch(const System& system, const StepData& step, const State& 
       const FrictionPoint& point = step.friction[k][i];
       if (point.load == 0.0) continue;
       const double speed = slip_velocity(point, system.relative_velocity(step, end.x, k, i)).norm();
-      if (speed > scene.slip_smoothing && !law_at(system.friction_settings(), point, speed).convex)
+      if (speed > scene.slip_smoothing && !law_at(system.friction_settings(k), point, speed).convex)
         return true;
     }
   return false;

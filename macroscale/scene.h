@@ -23,10 +23,12 @@ namespace heddle::macroscale {
 struct Scene {
   Blank blank;
   const mesoscale::FabricProperties* fabric = nullptr;
-  const friction::Model* friction = nullptr;  ///< null = frictionless
-  bool plies_rub = true;                      ///< whether the same law acts between plies
-  bool self_contact = false;                  ///< whether a ply that folds touches itself
-  double nesting = 0.0;  ///< how much nearer than a thickness two plies lie unpressed [m]
+  /// Of all tools without a law of their own, between plies and of a sheet that touches itself; null =
+  /// frictionless everywhere.
+  const friction::Model* friction = nullptr;
+  bool plies_rub = true;      ///< whether the same law acts between plies
+  bool self_contact = false;  ///< whether a ply that folds touches itself
+  double nesting = 0.0;       ///< how much nearer than a thickness two plies lie unpressed [m]
   std::vector<Tool> tools;
 
   std::vector<char> held;    ///< per unknown 3 i + c: 1 = its position is prescribed; empty = all free

@@ -96,8 +96,8 @@ void accept(const System& system, const StepData& step, const VectorXd& x, State
   place(system, step, x, end);
   const Scene& scene = system.scene();
   if (step.frictionless || !scene.friction) return;
-  const FrictionSettings settings = system.friction_settings();
-  for (int k = 0; k < system.friction_rows(step); ++k)
+  for (int k = 0; k < system.friction_rows(step); ++k) {
+    const FrictionSettings settings = system.friction_settings(k);
     for (int i = 0; i < system.points_in_row(step, k); ++i) {
       const FrictionPoint& point = step.friction[k][i];
       friction::ContactState& memory = end.memory[k][i];
@@ -111,6 +111,7 @@ void accept(const System& system, const StepData& step, const VectorXd& x, State
       memory.work_per_area +=
           friction_force(settings, point, v).dot(v) * step.dt / system.area_in_row(step, k, i);
     }
+  }
 }
 
 // What makes a converged state unusable, or "": a corner that closed or turned over, fabric pressed beyond

@@ -67,6 +67,7 @@ struct ToolFileSpec {
 struct PunchSpec {                   ///< hemisphere with its apex down and a cylinder above, or a file
   double radius = 0.070;             ///< [m]
   std::optional<ToolFileSpec> file;  ///< then the numbers of the shape are not used
+  std::optional<double> friction_coefficient;  ///< constant, in place of the law and its effects [-]
 };
 /// What lies below the opening of a die: nothing, a level floor, or a bowl of the opening's radius.
 enum class DieBottom { open, flat, bowl };
@@ -77,6 +78,7 @@ struct DieSpec {                  ///< plate with a round opening and a filleted
   DieBottom bottom = DieBottom::open;
   double depth = 0.0;  ///< of the bottom's lowest point below the die's face [m]
   std::optional<ToolFileSpec> file;
+  std::optional<double> friction_coefficient;  ///< constant, in place of the law and its effects [-]
 };
 /// What holds the binder: its force, or stops that keep its face at a gap from the die's.
 enum class BinderControl { force, gap };
@@ -91,6 +93,7 @@ struct BinderSpec {             ///< flat ring under force, free to move in z
       0.0;          ///< of the springs behind the binder: its force grows by this as it is lifted [N/m]
   int sectors = 1;  ///< equal ones, each with its share of force, springs and mass, free by itself
   std::optional<ToolFileSpec> file;
+  std::optional<double> friction_coefficient;  ///< constant, in place of the law and its effects [-]
 };
 
 struct ProcessSpec {

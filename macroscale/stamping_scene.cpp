@@ -69,6 +69,18 @@ double closed_approach(const StampingSpec& spec, const mesoscale::FabricProperti
   return approach_at(fabric.compaction.curves().front(), pressure);
 }
 
+std::optional<double> friction_coefficient_of(const StampingSpec& spec, Role role) {
+  switch (role) {
+    case Role::punch:
+      return spec.punch.friction_coefficient;
+    case Role::die:
+      return spec.die.friction_coefficient;
+    case Role::binder:
+      return spec.binder.friction_coefficient;
+  }
+  return {};
+}
+
 double binder_weight(const StampingSpec& spec) {
   return spec.process.press.gravity ? standard_gravity * spec.binder.mass : 0.0;
 }
@@ -117,6 +129,11 @@ Scene stamping_scene(const StampingSpec& spec, const mesoscale::FabricProperties
         {Role::die, PlaneShape{Vector3d(0.0, 0.0, -closed - spec.die.depth)}, Motion::fixed, 0.0, 0.0});
   for (Tool& binder : binders_of(spec, tools.binder, closed, weight))
     scene.tools.push_back(std::move(binder));
+  for (Tool& tool : scene.tools)
+    if (const auto coefficient = friction_coefficient_of(spec, tool.role)) {
+      tool.friction.emplace();
+      tool.friction->law = friction::Coulomb{*coefficient};
+    }
   take_share(scene.tools, spec.blank.symmetry);
   scene.held = held_by_planes(scene.blank);
   if (press.gravity) scene.load = weight_of_fabric(scene);

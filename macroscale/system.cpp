@@ -208,12 +208,12 @@ void System::evaluate(const StepData& step, const VectorXd& x, Position& at) con
   });
   const int tools = static_cast<int>(scene_.tools.size());
   const bool rubs = scene_.friction && !step.frictionless;
-  const FrictionSettings settings = friction_settings();
   at.contacts.resize(tools);
   at.friction.resize(rubs ? friction_rows(step) : 0);
   for (int k = 0; k < tools; ++k) {
     at.contacts[k].resize(contacts());
     if (rubs) at.friction[k].resize(contacts());
+    const FrictionSettings settings = friction_settings(k);
     for_each(contacts(), [&, k](int i) {
       const ToolContact contact = tool_contact(step, x, k, i);
       at.contacts[k][i] = {contact.surface.distance, contact.surface.normal, contact.normal};
@@ -297,14 +297,15 @@ PotentialTerms System::potential(const StepData& step, const Position& at) const
 
 double System::friction_difference(const StepData& step, const Position& from, const Position& to) const {
   if (from.friction.empty()) return 0.0;
-  const FrictionSettings settings = friction_settings();
   double sum = 0.0;
-  for (int k = 0; k < friction_rows(step); ++k)
+  for (int k = 0; k < friction_rows(step); ++k) {
+    const FrictionSettings settings = friction_settings(k);
     sum += ordered_sum(points_in_row(step, k), [&](int i) {
       const FrictionPoint& point = step.friction[k][i];
       if (point.load == 0.0) return 0.0;
       return friction_power_difference(settings, point, from.friction[k][i], to.friction[k][i]);
     });
+  }
   return step.dt * sum;
 }
 

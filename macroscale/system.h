@@ -175,7 +175,11 @@ class System {
   /// The same for contact point i, at x, whose fabric is as it is held in the step.
   ToolContact contact_at(const StepData& step, const Eigen::Vector3d& x, int k, int i, double z) const;
   double mass(int unknown) const { return mass_[unknown]; }
-  FrictionSettings friction_settings() const { return {scene_.friction, scene_.slip_smoothing}; }
+  /// Of a row of friction: a tool may have a law of its own; plies rub by the scene's.
+  FrictionSettings friction_settings(int row) const {
+    const bool own = row < static_cast<int>(scene_.tools.size()) && scene_.tools[row].friction;
+    return {own ? &*scene_.tools[row].friction : scene_.friction, scene_.slip_smoothing};
+  }
   /// Energies and forces of the constant (quadratic) terms.
   double bending_stiffness(const TowTriple& triple) const;
   double bending_stiffness(const MirroredTriple& triple) const;

@@ -205,7 +205,7 @@ Matrix3d System::contact_stiffness(const StepData& step, const Position& at, int
                                                                : FrictionTangent::secant;
   if (!at.friction.empty() && step.friction[k][i].load > 0.0)
     stiffness +=
-        friction_tangent(friction_settings(), step.friction[k][i], at.friction[k][i], tangent) / step.dt;
+        friction_tangent(friction_settings(k), step.friction[k][i], at.friction[k][i], tangent) / step.dt;
   return stiffness;
 }
 

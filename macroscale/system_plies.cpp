@@ -90,7 +90,7 @@ void System::evaluate_plies(const StepData& step, Position& at) const {
   at.ply_contacts.resize(step.pairs.size());
   const bool rub = count > 0 && rubs(step, row);
   if (rub) at.friction[row].resize(step.pairs.size());
-  const FrictionSettings settings = friction_settings();
+  const FrictionSettings settings = friction_settings(row);
   tbb::parallel_for(tbb::blocked_range<int>(0, count, 256), [&](const tbb::blocked_range<int>& range) {
     for (int i = range.begin(); i != range.end(); ++i) {
       at.ply_contacts[i] = contact_of_plies(step.pairs[i], at.x);
@@ -136,7 +136,8 @@ void System::add_contact_of_plies(const StepData& step, const Position& at, Filt
     std::array<Matrix3d, 8> across, moved;
     if (rub) {
       const Matrix3d tangent =
-          friction_tangent(friction_settings(), step.friction[row][k], at.friction[row][k], kind) / step.dt;
+          friction_tangent(friction_settings(row), step.friction[row][k], at.friction[row][k], kind) /
+          step.dt;
       across = slip_factors(pair);
       for (std::size_t a = 0; a < nodes.size(); ++a) moved[a] = tangent * across[a];
     }

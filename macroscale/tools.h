@@ -7,6 +7,7 @@
 
 #include <Eigen/Core>
 
+#include "friction/model.h"
 #include "friction/rig/curved_plates.h"
 
 namespace heddle::macroscale {
@@ -112,6 +113,8 @@ struct Tool {
   double stiffness = 0.0;  ///< of its spring; 0 = none (loaded) [N/m]
   double yield = 0.0;      ///< force at which the spring of a sprung tool yields to a push; 0 = never [N]
   std::optional<Turn> turn = {};
+  /// Its own law and effects, in place of those of the scene; absent: the scene's.
+  std::optional<friction::Model> friction = {};
 };
 
 bool has_unknown(const Tool& tool);  ///< loaded and sprung tools have one of their own

@@ -1,6 +1,7 @@
 #include "pipeline/case.h"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <set>
 
@@ -17,6 +18,23 @@ namespace heddle::pipeline {
 namespace {
 
 constexpr double melting_range_of_polypropylene = 433.15;  // its lower end [K]; recalled
+
+/// Tools that leave the law of the case.
+void note_tool_friction(Case& a_case) {
+  if (!a_case.stamping) return;
+  const auto say = [&](const char* tool, const std::optional<double>& coefficient) {
+    if (!coefficient) return;
+    a_case.notes.push_back(
+        *coefficient == 0.0
+            ? fmt::format("tools.{}.friction_coefficient = 0: this tool is frictionless", tool)
+            : fmt::format("tools.{0}.friction_coefficient = {1}: mu = {1} on this tool, whatever the law of "
+                          "`friction` and its effects say of the others",
+                          tool, *coefficient));
+  };
+  say("punch", a_case.stamping->punch.friction_coefficient);
+  say("die", a_case.stamping->die.friction_coefficient);
+  say("binder", a_case.stamping->binder.friction_coefficient);
+}
 
 /// Values no source of ours measures, said wherever the case is shown.
 void note_assumptions(Case& a_case) {
@@ -44,6 +62,10 @@ void note_assumptions(Case& a_case) {
           "friction.film_temperature = conduction changes nothing by itself: effects tool_temperature_film, "
           "solidification and shear_heating draw on it, and none of them is on");
   }
+  note_tool_friction(a_case);
+  if (const auto given = in_words(a_case.fabric); !given.empty())
+    a_case.notes.push_back(
+        fmt::format("fabric, given in place of what the weave says: {}", fmt::join(given, "; ")));
   const bool artefact = a_case.stamping && (a_case.stamping->artefact.mass_scaling != 1.0 ||
                                             a_case.stamping->artefact.stabilisation != 0.0);
   if (artefact) a_case.notes.push_back("artefact: a non-physical help is switched on");
@@ -193,9 +215,10 @@ std::vector<std::string> stage_lines(const Case& a_case) {
                                 mesoscale::study::points(*a_case.cell, *a_case.study).size(),
                                 a_case.study->shear_angles.size()));
   if (const auto study = stamping_study_of(a_case.settings))
-    lines.push_back(
-        fmt::format("stamping study: by `heddle study` alone, {} models, {} speeds, {} binder forces",
-                    study->models.size(), study->speed_scales.size(), study->binder_forces.size()));
+    lines.push_back(fmt::format(
+        "stamping study: by `heddle study` alone, {} models, {} speeds, {} binder forces{}",
+        study->models.size(), study->speed_scales.size(), study->binder_forces.size(),
+        study->variations.empty() ? "" : fmt::format(", {} variations", study->variations.size())));
   if (a_case.discover) lines.push_back("discover: by `heddle discover` alone, in its --data");
   if (a_case.calibrate) lines.push_back("calibrate: by `heddle calibrate` alone, to its --data");
   return lines;

@@ -15,6 +15,7 @@
 #include "pipeline/calibrate_keys.h"
 #include "pipeline/config_reader.h"
 #include "pipeline/discover_keys.h"
+#include "pipeline/fabric_override.h"
 #include "pipeline/study_keys.h"
 
 namespace heddle::pipeline {
@@ -55,6 +56,7 @@ struct OrientationStudySpec {
 struct Case {
   std::string name;
   std::optional<mesoscale::CellSpec> cell;
+  FabricOverride fabric;                                  ///< given in place of what the cell says
   std::optional<mesoscale::solid::SolidSpec> solid;       ///< stiffness of the weave's solid part
   std::optional<mesoscale::solid::VoxelFileSpec> voxels;  ///< stiffness of a cell of its own, from a file
   std::optional<FrictionSpec> friction;

@@ -254,11 +254,29 @@ Problems check_voxels(const Case& a_case, const ReadConfig& config) {
   return problems;
 }
 
+/// What is measured of the fabric begins at the thickness of the weave as it comes, which other states have
+/// not.
+Problems check_given_fabric(const Case& a_case) {
+  const mesoscale::CellSpec& cell = *a_case.cell;
+  if (!a_case.fabric.compaction.empty() && cell.state != mesoscale::CellState::as_woven)
+    return {{"fabric.compaction.file.state"_rule,
+             "fabric.compaction.file",
+             "",
+             "is measured on the fabric as woven, and cell.state is another",
+             "Leave one of the two out.",
+             "",
+             0,
+             {"cell.state"}}};
+  return check(a_case.fabric, cell.weave.fabric_thickness);
+}
+
 }  // namespace
 
 Problems check_between_keys(const Case& a_case, const ReadConfig& config) {
   Problems problems;
   if (a_case.cell) append(problems, mesoscale::check(*a_case.cell));
+  if (a_case.cell && !any_below(config.failed, {"fabric", "weave", "cell"}))
+    append(problems, check_given_fabric(a_case));
   if (a_case.solid) append(problems, mesoscale::solid::check(*a_case.solid));
   if (a_case.voxels) append(problems, check_voxels(a_case, config));
   if (a_case.friction) {
@@ -289,7 +307,8 @@ Problems check_between_keys(const Case& a_case, const ReadConfig& config) {
     append(problems, check_distinct(a_case.orientation_study->friction, "orientation_study.friction"));
     append(problems, check_turned_pieces(a_case));
   }
-  if (const auto study = stamping_study_of(a_case.settings)) append(problems, check_stamping_study(*study));
+  if (const auto study = stamping_study_of(a_case.settings))
+    append(problems, check_stamping_study(*study, config.root));
   if (a_case.study && !any_below(config.failed, {"weave", "cell", "study"}))
     append(problems, check_study(*a_case.study, *a_case.cell));
   if (a_case.cell && a_case.stamping) {

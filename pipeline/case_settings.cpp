@@ -124,6 +124,21 @@ mesoscale::StackSpec stack_of(const Settings& settings) {
   return stack;
 }
 
+FabricOverride fabric_override_of(const Settings& settings, const std::filesystem::path& folder) {
+  FabricOverride given;
+  const auto table = [&](const char* path) {
+    return settings.has(path) ? folder / settings.text(path) : std::filesystem::path();
+  };
+  given.shear = table("fabric.shear.file");
+  given.tension = table("fabric.tension.file");
+  given.compaction = table("fabric.compaction.file");
+  if (settings.has("fabric.bending.warp")) given.bending[0] = settings.number("fabric.bending.warp");
+  if (settings.has("fabric.bending.weft")) given.bending[1] = settings.number("fabric.bending.weft");
+  take(settings, "fabric.shear_scale", given.shear_scale);
+  take(settings, "fabric.tension_scale", given.tension_scale);
+  return given;
+}
+
 mesoscale::CellSpec cell_of(const Settings& settings) {
   mesoscale::CellSpec cell;
   cell.weave = weave_of(settings, "weave");
@@ -272,6 +287,15 @@ void take_bottom(const Settings& settings, macroscale::DieSpec& die) {
   take(settings, "tools.die.depth", die.depth);
 }
 
+void take_friction(const Settings& settings, macroscale::StampingSpec& stamping) {
+  const auto coefficient = [&](const char* path) {
+    return settings.has(path) ? std::optional(settings.number(path)) : std::nullopt;
+  };
+  stamping.punch.friction_coefficient = coefficient("tools.punch.friction_coefficient");
+  stamping.die.friction_coefficient = coefficient("tools.die.friction_coefficient");
+  stamping.binder.friction_coefficient = coefficient("tools.binder.friction_coefficient");
+}
+
 void take_control(const Settings& settings, macroscale::BinderSpec& binder) {
   if (settings.is("tools.binder.control", "gap")) binder.control = macroscale::BinderControl::gap;
   take(settings, "tools.binder.gap", binder.gap);
@@ -347,6 +371,7 @@ macroscale::StampingSpec stamping_of(const Settings& settings, const std::filesy
   take(settings, "tools.binder.inner_radius", stamping.binder.inner_radius);
   take(settings, "tools.binder.edge_fillet", stamping.binder.edge_fillet);
   take(settings, "tools.binder.mass", stamping.binder.mass);
+  take_friction(settings, stamping);
   take_bottom(settings, stamping.die);
   take_control(settings, stamping.binder);
   stamping.punch.file = tool_file_of(settings, "punch", folder);
@@ -379,6 +404,7 @@ Case case_of(const ReadConfig& config, const std::filesystem::path& folder) {
   Case result;
   take(settings, "name", result.name);
   if (runs(Stage::cell)) result.cell = cell_of(settings);
+  if (runs(Stage::cell)) result.fabric = fabric_override_of(settings, folder);
   if (runs(Stage::solid)) {
     result.solid = solid_of(settings);
     result.solid->stack = stack_of(settings);

@@ -63,12 +63,12 @@ Result cached(RunFolder& folder, const Cache& cache, ChainStage stage, const Cas
 void run_cell(const Case& a_case, RunFolder& folder, const Cache& cache, Findings& findings) {
   if (!a_case.cell) return;
   CellStage stage = cached<CellStage>(folder, cache, ChainStage::mesoscale, a_case, read_cell_stage, [&] {
-    return CellStage{mesoscale::analyse(*a_case.cell), weave_pictures(*a_case.cell)};
+    return CellStage{analyse_cell(*a_case.cell, a_case.fabric), weave_pictures(*a_case.cell)};
   });
   findings.cell = std::move(stage.result);
   findings.pictures = std::move(stage.pictures);
   const mesoscale::FabricProperties& fabric = findings.cell->fabric;
-  folder.write("mesoscale/fabric.json", fabric_json(fabric));
+  folder.write("mesoscale/fabric.json", fabric_json(fabric, in_words(a_case.fabric)));
   folder.write("mesoscale/contact.csv",
                contact_csv(fabric.contact, contact_pressures(), fabric.contact.log_fraction.parameter()));
   folder.write("mesoscale/picture_frame.csv", picture_frame_csv(fabric));

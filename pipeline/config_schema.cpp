@@ -154,6 +154,22 @@ std::vector<Key> fabric_keys() {
       {.path = "fabric.shear_hysteresis.stiffness", .type = KeyType::quantity, .presence = defaulted,
        .default_text = "2", .range = "[1, 1000]", .stage = Stage::stamping,
        .help = "Stiffness of that friction when shear turns back, over the steepest slope it has had on loading; a prior."},
+      {.path = "fabric.shear.file", .type = KeyType::file, .presence = optional, .stage = cell,
+       .help = "Measured shear in place of the weave's: columns shear_angle_deg and shear_force_N_per_mm, the normalised force of a picture frame, from 0 deg and 0 N/mm on."},
+      {.path = "fabric.tension.file", .type = KeyType::file, .presence = optional, .stage = cell,
+       .help = "Measured tension in place of the weave's, warp and weft each by itself: columns strain, warp_tension_N_per_mm and weft_tension_N_per_mm, from zeros on."},
+      {.path = "fabric.compaction.file", .type = KeyType::file, .presence = optional, .stage = cell,
+       .help = "Measured compaction in place of the weave's: columns thickness_mm and pressure_kPa, from weave.fabric_thickness and 0 kPa on."},
+      {.path = "fabric.bending.warp", .type = KeyType::quantity, .unit = "N mm", .presence = optional,
+       .range = "(0 N mm, 100000 N mm)", .stage = cell, .help = "Measured bending stiffness per width along the warp, in place of the weave's."},
+      {.path = "fabric.bending.weft", .type = KeyType::quantity, .unit = "N mm", .presence = optional,
+       .range = "(0 N mm, 100000 N mm)", .stage = cell, .help = "The same along the weft."},
+      {.path = "fabric.shear_scale", .type = KeyType::quantity, .presence = defaulted, .default_text = "1",
+       .range = "(0, 1000000)", .stage = cell,
+       .help = "Factor on the rate-free resistance to shear, for studies; 1 is off."},
+      {.path = "fabric.tension_scale", .type = KeyType::quantity, .presence = defaulted, .default_text = "1",
+       .range = "(0, 1000000)", .stage = cell,
+       .help = "Factor on the tension energy of the tows, for studies; 1 is off."},
   };
 }
 

@@ -202,7 +202,7 @@ const ForceCurve& StampingRuns::operator()(const std::vector<std::string>& keys)
 const mesoscale::FabricProperties& StampingRuns::fabric_of(const Case& a_case) {
   const std::string key = inputs_of(ChainStage::mesoscale, a_case).key();
   if (const auto known = fabrics_.find(key); known != fabrics_.end()) return known->second;
-  return fabrics_.emplace(key, mesoscale::analyse(*a_case.cell).fabric).first->second;
+  return fabrics_.emplace(key, analyse_cell(*a_case.cell, a_case.fabric).fabric).first->second;
 }
 
 ForceCurve StampingRuns::stamp(const std::vector<std::string>& keys) {

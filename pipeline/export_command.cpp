@@ -34,7 +34,7 @@ friction::ExportedLaw law_of(const Case& a_case) {
   const bool real = spec.contact_pressure == macroscale::ContactPressure::real &&
                     friction::reads_hersey_number(spec.model.law);
   if (real) {
-    fabric = mesoscale::analyse(*a_case.cell).fabric;
+    fabric = analyse_cell(*a_case.cell, a_case.fabric).fabric;
     law.log_area = fabric->contact.log_fraction.curves().front();  // the one of no shear
   }
   law.model = run_friction_stage(a_case, fabric ? &*fabric : nullptr).model;

@@ -362,8 +362,9 @@ int run_orientation_study(const RunOptions& options, Case a_case) {
   RunFolder folder(a_case, output_folder(options, a_case.name), options.force);
   const Cache cache(options.cache, [&](const std::string& line) { folder.log(line); });
   const InterruptGuard guard;
-  const auto cell = folder.stage("mesoscale", [&](bool&) { return mesoscale::analyse(*a_case.cell); });
-  folder.write("mesoscale/fabric.json", fabric_json(cell.fabric));
+  const auto cell =
+      folder.stage("mesoscale", [&](bool&) { return analyse_cell(*a_case.cell, a_case.fabric); });
+  folder.write("mesoscale/fabric.json", fabric_json(cell.fabric, in_words(a_case.fabric)));
   const FrictionStage friction =
       folder.stage("friction", [&](bool&) { return run_friction_stage(a_case, &cell.fabric); });
 

@@ -169,8 +169,11 @@ std::vector<mesoscale::solid::ShearedSolid> read_sheared_json(std::string_view t
 /// it is held flat, a kelvin and a unit of resin shrinkage.
 std::string sheared_csv(const std::vector<mesoscale::solid::ShearedSolid>& sheared);
 
-std::string fabric_json(const mesoscale::FabricProperties& fabric);
-/// Reads what fabric_json wrote: every number comes back bit for bit.
+/// @param given  what stands in place of the weave's own, for readers of the file (in_words of
+/// FabricOverride)
+std::string fabric_json(const mesoscale::FabricProperties& fabric,
+                        const std::vector<std::string>& given = {});
+/// Reads what fabric_json wrote: every number comes back bit for bit; what was given is passed over.
 /// @param file  name for messages only
 /// @throws InputError  naming every key that is missing, unknown, of the wrong type, or holds a table against
 /// the rules

@@ -326,7 +326,7 @@ mesoscale::Provenance read_provenance(Reader& reader, const Json& node) {
   reader.get(provenance.specification, node, place, "specification");
   reader.get(provenance.unverified, node, place, "unverified");
   reader.get(provenance.grid_error, node, place, "grid_error");
-  reader.only(node, place, {"specification", "unverified", "grid_error"});
+  reader.only(node, place, {"specification", "unverified", "grid_error", "given"});
   return provenance;
 }
 
@@ -425,26 +425,27 @@ std::string summary_json(const SummaryRecord& record) {
   return json_text(root);
 }
 
-std::string fabric_json(const mesoscale::FabricProperties& fabric) {
-  const Json root{{"areal_density_kg_m2", fabric.areal_density},
-                  {"pitch_m", fabric.pitch},
-                  {"thickness_m", fabric.thickness},
-                  {"tension_energy", surface_json(fabric.tension_energy)},
-                  {"shear_stress", curve_json(fabric.shear_stress, shear_stress_keys)},
-                  {"shear_rate",
-                   {{"consistency_N_s_n_m", fabric.shear_rate.consistency},
-                    {"index", fabric.shear_rate.index},
-                    {"activation_temperature_K", fabric.shear_rate.activation_temperature},
-                    {"reference_temperature_K", fabric.shear_rate.reference_temperature}}},
-                  {"bending",
-                   {{"warp", curve_json(fabric.bending[0], bending_keys)},
-                    {"weft", curve_json(fabric.bending[1], bending_keys)}}},
-                  {"compaction", family_json(fabric.compaction, compaction_keys)},
-                  {"contact", family_json(fabric.contact.log_fraction, contact_keys)},
-                  {"provenance",
-                   {{"specification", fabric.provenance.specification},
-                    {"unverified", fabric.provenance.unverified},
-                    {"grid_error", fabric.provenance.grid_error}}}};
+std::string fabric_json(const mesoscale::FabricProperties& fabric, const std::vector<std::string>& given) {
+  Json root{{"areal_density_kg_m2", fabric.areal_density},
+            {"pitch_m", fabric.pitch},
+            {"thickness_m", fabric.thickness},
+            {"tension_energy", surface_json(fabric.tension_energy)},
+            {"shear_stress", curve_json(fabric.shear_stress, shear_stress_keys)},
+            {"shear_rate",
+             {{"consistency_N_s_n_m", fabric.shear_rate.consistency},
+              {"index", fabric.shear_rate.index},
+              {"activation_temperature_K", fabric.shear_rate.activation_temperature},
+              {"reference_temperature_K", fabric.shear_rate.reference_temperature}}},
+            {"bending",
+             {{"warp", curve_json(fabric.bending[0], bending_keys)},
+              {"weft", curve_json(fabric.bending[1], bending_keys)}}},
+            {"compaction", family_json(fabric.compaction, compaction_keys)},
+            {"contact", family_json(fabric.contact.log_fraction, contact_keys)},
+            {"provenance",
+             {{"specification", fabric.provenance.specification},
+              {"unverified", fabric.provenance.unverified},
+              {"grid_error", fabric.provenance.grid_error}}}};
+  if (!given.empty()) root["provenance"]["given"] = given;
   return json_text(root);
 }
 

@@ -91,7 +91,8 @@ const std::vector<std::string>& keys_without_effect() {
                                              "orientation_study.friction",
                                              "stamping_study.binder_force",
                                              "stamping_study.speed_scale",
-                                             "stamping_study.models"};
+                                             "stamping_study.models",
+                                             "stamping_study.vary"};
   return keys;
 }
 

@@ -142,8 +142,15 @@ std::vector<Key> contact_keys() {
   };
 }
 
-// A tool by its file instead of by its shape: a key is then used by the shape or by the file, never by both.
 namespace {
+
+Key tool_friction_key(const std::string& tool) {
+  return {.path = "tools." + tool + ".friction_coefficient", .type = KeyType::quantity, .presence = optional,
+          .range = "[0, 10)", .stage = Stage::stamping,
+          .help = "Constant mu on this tool, in place of the law and its effects; 0: frictionless. Absent: the law."};
+}
+
+// A tool by its file instead of by its shape: a key is then used by the shape or by the file, never by both.
 
 std::vector<Key> tool_file_keys(const std::string& tool) {
   const std::string block = "tools." + tool, with_file = block + ".file";
@@ -183,6 +190,7 @@ std::vector<Key> tool_keys() {
        .range = "(0 mm, 10000 mm)", .stage = stamping, .used_when = "!tools.punch.file", .help = "Of hemisphere and cylinder."},
   };
   append(keys, tool_file_keys("punch"));
+  keys.push_back(tool_friction_key("punch"));
   append(keys, {
       {.path = "tools.die.shape", .type = KeyType::choice, .presence = required, .choices = {"ring"}, .stage = stamping,
        .used_when = "!tools.die.file", .help = "Plate with a round opening and a filleted edge."},
@@ -199,6 +207,7 @@ std::vector<Key> tool_keys() {
        .help = "Of that bottom's lowest point below the die's face."},
   });
   append(keys, tool_file_keys("die"));
+  keys.push_back(tool_friction_key("die"));
   append(keys, {
       {.path = "tools.binder.shape", .type = KeyType::choice, .presence = required, .choices = {"ring"}, .stage = stamping,
        .used_when = "!tools.binder.file", .help = "Flat ring under force, free to move up and down."},
@@ -224,6 +233,7 @@ std::vector<Key> tool_keys() {
        .help = "Equal sectors of the binder, the first about x, each with its share of force, springs and mass and free to move by itself."},
   });
   append(keys, tool_file_keys("binder"));
+  keys.push_back(tool_friction_key("binder"));
   return keys;
 }
 // clang-format on

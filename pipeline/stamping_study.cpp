@@ -14,6 +14,7 @@
 #include "pipeline/run_folder.h"
 #include "pipeline/stage_keys.h"
 #include "pipeline/stages.h"
+#include "pipeline/stamping_record.h"
 
 namespace heddle::pipeline {
 
@@ -58,21 +59,43 @@ std::vector<PlannedStamping> plan(const StampingStudySpec& spec, const Case& a_c
     for (const double scale : spec.speed_scales.empty() ? own_speed : spec.speed_scales)
       add(model, process.binder_force, scale);
   for (const double force : spec.binder_forces) add(spec.models.front(), force, process.speed_scale);
+  if (!spec.variations.empty()) add(spec.models.front(), process.binder_force, process.speed_scale);
+  for (std::size_t k = 0; k < spec.variations.size(); ++k)
+    for (const std::vector<std::string>& values : combinations(spec.variations[k])) {
+      PlannedStamping planned{{id_of(spec.variations[k], values), given}, assignments};
+      planned.of.variation = static_cast<int>(k);
+      for (std::size_t i = 0; i < values.size(); ++i)
+        planned.assignments.push_back(spec.variations[k][i].key + "=" + values[i]);
+      all.push_back(std::move(planned));
+    }
   return all;
 }
 
+// What a stamping of the study has for the keys that vary, and for those that every study does.
+void take_values(StudiedStamping& stamping, const Case& a_case, const std::vector<std::string>& keys) {
+  for (const std::string& key : keys) {
+    const Setting* setting = a_case.settings.find(key);
+    stamping.values.push_back(setting ? resolved_value(*setting) : "");
+  }
+  stamping.binder_force = a_case.stamping->process.binder_force;
+  stamping.speed_scale = a_case.stamping->process.speed_scale;
+}
+
 // Before anything runs: a wrong key of the last model must not cost the stampings of the others.
-void demand_readable(const RunOptions& options, const std::vector<PlannedStamping>& all) {
+void demand_readable(const RunOptions& options, const std::vector<std::string>& keys,
+                     std::vector<PlannedStamping>& all) {
   Problems problems;
   std::string last;
-  for (const PlannedStamping& planned : all) {
-    if (planned.of.model == last) continue;  // its keys are the same at every speed
+  for (PlannedStamping& planned : all) {
+    if (keys.empty() && planned.of.model == last) continue;  // its keys are the same at every speed
     last = planned.of.model;
     try {
-      read_case(options.file, planned.assignments);
+      take_values(planned.of, read_case(options.file, planned.assignments), keys);
     } catch (const InputError& error) {
       for (Problem problem : error.problems()) {
-        if (problem.file.starts_with("--set")) problem.file = "stamping_study.models, " + planned.of.model;
+        if (problem.file.starts_with("--set"))
+          problem.file = planned.of.variation < 0 ? "stamping_study.models, " + planned.of.model
+                                                  : "stamping_study.vary, " + planned.of.id;
         problems.push_back(std::move(problem));
       }
     }
@@ -127,12 +150,22 @@ void take(StudiedStamping& stamping, const CaseRecord& record, const fs::path& f
   stamping.steps = steps_in(folder / "cases" / stamping.id / "macroscale/history.csv");
   stamping.energy_residual_max = result_of(record, "macroscale.energy_residual_max");
   stamping.outside_calibration = result_of(record, "macroscale.friction_work_outside_calibration");
+  stamping.force_balance_residual_max = result_of(record, "macroscale.force_balance_residual_max");
+  const fs::path checkpoint = folder / "cases" / stamping.id / checkpoint_name;
+  if (stamping.steps.empty() || !fs::exists(checkpoint)) return;
+  const std::string bytes = read_file(checkpoint);
+  const StampingRecord kept = read_stamping_record(Hdf5Reader(bytes));
+  if (!kept.frames.empty()) {
+    const macroscale::BlankState& blank = kept.frames.back().blank;
+    if (blank.punch_displacement > 0.0) stamping.shear = shear_place(blank, blank.punch_displacement);
+  }
 }
 
 std::vector<const StudiedStamping*> done(const StampingStudyFindings& findings, const std::string& model) {
   std::vector<const StudiedStamping*> found;
   for (const StudiedStamping& stamping : findings.stampings)
-    if (stamping.model == model && stamping.status == CaseStatus::done && stamping.peak())
+    if (stamping.model == model && stamping.variation < 0 && stamping.status == CaseStatus::done &&
+        stamping.peak())
       found.push_back(&stamping);
   return found;
 }
@@ -157,9 +190,23 @@ const std::vector<Column>& columns() {
       {"work_friction_J", [](const S&, const T& t) { return t.friction; }},
       {"work_shear_rate_J", [](const S&, const T& t) { return t.shear_rate; }},
       {"energy_residual_max", [](const S& s, const T&) { return s.energy_residual_max; }},
+      {"force_balance_residual_max", [](const S& s, const T&) { return s.force_balance_residual_max; }},
       {"friction_work_outside_calibration", [](const S& s, const T&) { return s.outside_calibration; }}};
   return all;
 }
+
+struct PlaceColumn {
+  const char* name;
+  double ShearPlace::*member;
+  double factor;
+};
+// At the end of the stroke, not at the peak.
+constexpr std::array place_columns{PlaceColumn{"shear_place_flat_radius_mm", &ShearPlace::flat_radius, 1e3},
+                                   PlaceColumn{"shear_place_direction_deg", &ShearPlace::direction, degrees},
+                                   PlaceColumn{"shear_place_radius_mm", &ShearPlace::radius, 1e3},
+                                   PlaceColumn{"shear_place_depth_mm", &ShearPlace::depth, 1e3},
+                                   PlaceColumn{"shear_deep_rms_deg", &ShearPlace::deep_rms, degrees},
+                                   PlaceColumn{"shear_level_rms_deg", &ShearPlace::level_rms, degrees}};
 
 std::string note_on_calibration(const StampingStudyFindings& findings) {
   double largest = 0.0;
@@ -177,9 +224,9 @@ void print(const StampingStudyFindings& findings) {
   for (const StudiedStamping& s : findings.stampings) {
     const StudiedStep* peak = s.peak();
     if (!peak) continue;
-    fmt::print("{:<16}{:>10.6g}{:>8.4g}{:>11.2f}{:>11.2f}{:>12.4f}{:>11.3f}{:>11.3f}{}\n", s.model,
-               s.binder_force, s.speed_scale, peak->force, degrees * peak->shear, 100.0 * peak->tow_strain,
-               peak->friction, peak->shear_rate,
+    fmt::print("{:<16}{:>10.6g}{:>8.4g}{:>11.2f}{:>11.2f}{:>12.4f}{:>11.3f}{:>11.3f}{}\n",
+               s.variation < 0 ? s.model : s.id, s.binder_force, s.speed_scale, peak->force,
+               degrees * peak->shear, 100.0 * peak->tow_strain, peak->friction, peak->shear_rate,
                s.status == CaseStatus::done ? "" : "  " + name_of(s.status));
   }
   for (const SpeedSignature& s : speed_signatures(findings)) {
@@ -216,6 +263,14 @@ std::vector<const StudiedStamping*> over_binder_force(const StampingStudyFinding
   std::erase_if(found, [&](const StudiedStamping* s) { return s->speed_scale != findings.speed_scale; });
   std::stable_sort(found.begin(), found.end(),
                    [](const auto* a, const auto* b) { return a->binder_force < b->binder_force; });
+  return found;
+}
+
+std::vector<const StudiedStamping*> over_variation(const StampingStudyFindings& findings, int variation) {
+  std::vector<const StudiedStamping*> found;
+  for (const StudiedStamping& stamping : findings.stampings)
+    if (stamping.variation == variation && stamping.status == CaseStatus::done && stamping.peak())
+      found.push_back(&stamping);
   return found;
 }
 
@@ -269,12 +324,17 @@ std::optional<BinderLine> binder_line(const StampingStudyFindings& findings) {
 std::string stamping_table_csv(const StampingStudyFindings& findings) {
   std::string out = "case,model,binder_force_N,speed_scale,status";
   for (const Column& column : columns()) out += "," + column.name;
+  for (const PlaceColumn& column : place_columns) out += fmt::format(",{}", column.name);
+  for (const std::string& key : findings.keys) out += "," + key;
   out += "\n";
   for (const StudiedStamping& s : findings.stampings) {
     out += fmt::format("{},{},{},{},{}", s.id, s.model, shortest(s.binder_force), shortest(s.speed_scale),
                        name_of(s.status));
     const StudiedStep* peak = s.peak();
     for (const Column& column : columns()) out += "," + (peak ? shortest(column.value(s, *peak)) : "");
+    for (const PlaceColumn& column : place_columns)
+      out += "," + (s.shear ? shortest(column.factor * (*s.shear).*column.member) : "");
+    for (const std::string& value : s.values) out += "," + value;
     out += "\n";
   }
   return out;
@@ -304,13 +364,25 @@ std::string stamping_table_h5(const StampingStudyFindings& findings) {
     }
     file.write("/results/" + column.name, std::span<const double>(values));
   }
+  for (const PlaceColumn& column : place_columns) {
+    std::vector<double> values;
+    for (const StudiedStamping& s : findings.stampings)
+      values.push_back(s.shear ? column.factor * (*s.shear).*column.member : std::nan(""));
+    file.write(fmt::format("/results/{}", column.name), std::span<const double>(values));
+  }
+  for (std::size_t k = 0; k < findings.keys.size(); ++k) {
+    std::string values;
+    for (const StudiedStamping& s : findings.stampings) values += s.values[k] + "\n";
+    file.write("/keys/" + findings.keys[k], values);
+  }
   return file.finish();
 }
 
 int study_stampings(const RunOptions& options, const Case& a_case) {
   const StampingStudySpec spec = stamping_study_of(a_case.settings).value();
-  const std::vector<PlannedStamping> all = plan(spec, a_case, options.assignments);
-  demand_readable(options, all);
+  std::vector<PlannedStamping> all = plan(spec, a_case, options.assignments);
+  const std::vector<std::string> keys = varied_keys(spec);
+  demand_readable(options, keys, all);
   const macroscale::ProcessSpec& process = a_case.stamping->process;
   RunFolder folder(a_case, output_folder(options, a_case.name), options.force);
   StampingStudyFindings findings{a_case.name,
@@ -320,7 +392,8 @@ int study_stampings(const RunOptions& options, const Case& a_case) {
                                  process.binder_force,
                                  process.speed_scale,
                                  {},
-                                 {}};
+                                 {},
+                                 keys};
   std::vector<ListedCase> list;
   for (const PlannedStamping& planned : all)
     list.push_back({planned.of.id, options.file, planned.assignments});

@@ -7,6 +7,7 @@
 #include "pipeline/case.h"
 #include "pipeline/case_list.h"
 #include "pipeline/commands.h"
+#include "pipeline/shear_place.h"
 #include "pipeline/stamping_study_keys.h"
 
 namespace heddle::pipeline {
@@ -28,10 +29,14 @@ struct StudiedStamping {
   std::string model;  ///< "given", or a name of stamping_study.models
   double binder_force = 0.0, speed_scale = 1.0;
   CaseStatus status = CaseStatus::done;
-  std::string message = {};             ///< why it is not done
-  std::vector<StudiedStep> steps = {};  ///< those accepted, also of one that stopped
-  double energy_residual_max = 0.0;     ///< [-]
-  double outside_calibration = 0.0;     ///< share of friction work [-]
+  std::string message = {};                 ///< why it is not done
+  std::vector<StudiedStep> steps = {};      ///< those accepted, also of one that stopped
+  double energy_residual_max = 0.0;         ///< [-]
+  double outside_calibration = 0.0;         ///< share of friction work [-]
+  double force_balance_residual_max = 0.0;  ///< [-]
+  int variation = -1;                       ///< of StampingStudySpec::variations; -1: none
+  std::vector<std::string> values = {};     ///< of StampingStudyFindings::keys, "" where it has none
+  std::optional<ShearPlace> shear = {};     ///< at the end of the stroke, or where it stopped
 
   /// The step at which the punch force is largest; null where there is none.
   const StudiedStep* peak() const;
@@ -45,11 +50,14 @@ struct StampingStudyFindings {
   double binder_force = 0.0, speed_scale = 1.0;  ///< of the case as given
   std::vector<StudiedStamping> stampings;
   std::vector<std::string> notes;
+  std::vector<std::string> keys = {};  ///< that vary (varied_keys)
 };
 
 /// Stampings of one model that differ in speed alone, by rising speed; those that failed are left out.
 std::vector<const StudiedStamping*> over_speed(const StampingStudyFindings& findings,
                                                const std::string& model);
+/// Stampings of one variation that are done, in the order of its combinations.
+std::vector<const StudiedStamping*> over_variation(const StampingStudyFindings& findings, int variation);
 /// The case as given at every binder force, by rising force.
 std::vector<const StudiedStamping*> over_binder_force(const StampingStudyFindings& findings);
 
@@ -81,13 +89,16 @@ std::optional<BinderLine> binder_line(const StampingStudyFindings& findings);
 std::string stamping_table_csv(const StampingStudyFindings& findings);
 /// The same numbers as data sets /keys/..., /results/... (NaN for what is not there), one entry a row.
 std::string stamping_table_h5(const StampingStudyFindings& findings);
+/// The part of the page about the keys that vary: one chart a result for each variation, and its table.
+std::string variation_sections(const StampingStudyFindings& findings);
 /// The page.
 std::string stamping_study_html(const StampingStudyFindings& findings);
 
-/// Stamps every model at every speed and the case as given at every binder force, each as `heddle run` would,
-/// in cases/ID. Writes table.csv, table.h5 and report.html. What is done already is not run again; a signal
-/// ends the study inside a stamping, and the same command goes on there. Returns an exit code.
-/// @throws InputError  where a model's keys cannot be read, with its name and every problem
+/// Stamps every model at every speed, the case as given at every binder force, and every variation, each as
+/// `heddle run` would, in cases/ID. Writes table.csv, table.h5 and report.html. What is done already is not
+/// run again; a signal ends the study inside a stamping, and the same command goes on there. Returns an exit
+/// code.
+/// @throws InputError  where the keys of a model or variation cannot be read, with its name and every problem
 int study_stampings(const RunOptions& options, const Case& a_case);
 
 }  // namespace heddle::pipeline

@@ -236,7 +236,7 @@ std::string stamping_study_html(const StampingStudyFindings& findings) {
     if (s.status != CaseStatus::done)
       notes.insert(notes.begin(), s.id + " is not done and left out: " + s.message);
   out += binder_section(findings) + speed_section(findings) + model_section(findings) +
-         section("What it rests on", list(notes));
+         variation_sections(findings) + section("What it rests on", list(notes));
   return out + page_foot(
                    "Written by heddle. Numbers: table.csv and table.h5 in the same folder; each stamping in "
                    "cases/.");

@@ -86,7 +86,8 @@ void check_alike(const BlankState& whole, const BlankState& mirrored, double sha
     cut_mirrored += area({ring(mirrored.pieces[k]), {}});
   }
   CHECK(cut_mirrored == Approx(cut).margin(1e-9));
-  CHECK(mirrored.edge.size() == whole.edge.size());
+  // About a circle the points of the whole do not begin at a plane.
+  CHECK(std::abs(static_cast<double>(mirrored.edge.size()) - static_cast<double>(whole.edge.size())) <= 1.0);
 }
 
 StampingResult run(StampingSpec spec, Symmetry symmetry,

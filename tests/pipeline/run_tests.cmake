@@ -6,8 +6,9 @@ heddle_test(discover_report SOURCES discover_report_test.cpp LIBRARIES heddle::r
 # Runs that are killed, stopped, reused and listed; some through the built program.
 heddle_test(resume SOURCES cache_test.cpp friction_store_test.cpp resume_test.cpp case_list_test.cpp LIBRARIES heddle::run)
 target_compile_definitions(test_resume PRIVATE HEDDLE_PROGRAM="$<TARGET_FILE:heddle>")
+heddle_test(fabric SOURCES fabric_override_test.cpp LIBRARIES heddle::config heddle::output)
 heddle_test(shear_tests SOURCES shear_tests_test.cpp LIBRARIES heddle::run)
-foreach(program test_run test_heat test_resume test_study test_shear_tests)
+foreach(program test_run test_heat test_resume test_study test_shear_tests test_fabric)
   target_compile_definitions(${program} PRIVATE HEDDLE_TEST_CACHE="${CMAKE_CURRENT_BINARY_DIR}/cache")
 endforeach()
 add_dependencies(test_resume heddle)

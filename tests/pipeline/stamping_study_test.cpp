@@ -170,3 +170,114 @@ TEST_CASE("a file that holds a study of cells and one of stampings is refused",
     CHECK(error.problems()[0].id == "study.both");
   }
 }
+
+TEST_CASE("a variation is every combination of its keys' values, each with a name", "[pipeline][study]") {
+  const std::vector<pipeline::VariedKey> variation{{"tools.die.friction_coefficient", {"0", "0.125"}},
+                                                   {"process.binder_force", {"22.8 N", "1e+3 N"}}};
+  const auto all = pipeline::combinations(variation);
+  REQUIRE(all.size() == 4);
+  CHECK(all[1] == std::vector<std::string>{"0", "1e+3 N"});
+  CHECK(all[2] == std::vector<std::string>{"0.125", "22.8 N"});
+  CHECK(pipeline::id_of(variation, all[2]) ==
+        "tools-die-friction_coefficient-0p125_process-binder_force-22p8N");
+  pipeline::StampingStudySpec spec;
+  spec.variations = {variation, {{"process.binder_force", {"1 N"}}, {"fabric.shear_scale", {"2"}}}};
+  CHECK(pipeline::varied_keys(spec) == std::vector<std::string>{"tools.die.friction_coefficient",
+                                                                "process.binder_force",
+                                                                "fabric.shear_scale"});
+}
+
+TEST_CASE("the place of the largest shear is the innermost of those alike, and means are by depth",
+          "[pipeline][study]") {
+  macroscale::BlankState blank;
+  blank.reference = {{0.03, -0.04}, {0.0, 0.06}, {0.03, 0.04}, {0.1, 0.0}};
+  blank.position = {{0.02, -0.03, -0.03}, {0.0, 0.05, -0.02}, {0.02, 0.03, -0.03}, {0.09, 0.0, 0.0}};
+  blank.shear_angle = {-0.5, 0.5, 0.4, 0.1};
+  const auto place = pipeline::shear_place(blank, 0.05);
+  CHECK(place.angle == 0.5);
+  CHECK(place.flat_radius == Approx(0.05));
+  CHECK(place.direction == Approx(std::atan2(4.0, 3.0)));
+  CHECK(place.radius == Approx(std::hypot(0.02, 0.03)));
+  CHECK(place.depth == 0.03);
+  CHECK(place.deep_rms == Approx(std::sqrt((0.25 + 0.16) / 2.0)));
+  CHECK(place.level_rms == Approx(0.1));
+}
+
+TEST_CASE("a study varies the friction of one tool, and says what each stamping had", "[pipeline][study]") {
+  const Scratch scratch;
+  auto options = heddle::test::options_for(scratch / "study", heddle::test::small_stamping());
+  options.cache = scratch / "cache";
+  heddle::test::warm(options.cache);
+  options.assignments.insert(options.assignments.end(),
+                             {"blank.grid_error=off", "friction={law: coulomb, coefficient: 0.3}",
+                              "stamping_study={vary: ['tools.die.friction_coefficient: 0; 0.5 & "
+                              "tools.binder.friction_coefficient: 0', "
+                              "'process.binder_force: 3000 N']}"});
+  REQUIRE(pipeline::study_case(options) == pipeline::exit_done);
+  const CsvTable table = read_csv(scratch / "study/table.csv");
+  REQUIRE(table.problems.empty());
+  REQUIRE(table.rows.size() == 4);
+  const auto cell = [&](std::size_t row, const std::string& name) {
+    const auto found = std::find(table.header.cells.begin(), table.header.cells.end(), name);
+    REQUIRE(found != table.header.cells.end());
+    return table.rows[row].cells[static_cast<std::size_t>(found - table.header.cells.begin())];
+  };
+  CHECK(cell(0, "case") == "given_650N_1V");
+  CHECK(cell(0, "tools.die.friction_coefficient").empty());
+  CHECK(cell(1, "tools.die.friction_coefficient") == "0");
+  CHECK(cell(2, "tools.die.friction_coefficient") == "0.5");
+  CHECK(cell(3, "process.binder_force") == "3000 N");
+  CHECK(cell(3, "binder_force_N") == "3000");
+  const auto force = [&](std::size_t row) { return std::stod(cell(row, "peak_punch_force_N")); };
+  CHECK(force(2) > force(1));
+  CHECK(force(3) > force(0));
+  CHECK(std::stod(cell(2, "shear_place_flat_radius_mm")) > 0.0);
+  CHECK(std::stod(cell(2, "energy_residual_max")) < 0.01);
+  CHECK_THAT(pipeline::read_file(scratch / "study/report.html"),
+             Catch::Contains("tools.die.friction_coefficient and tools.binder.friction_coefficient"));
+  // One that differs only in a varied key is none of the speeds and forces of the case as given.
+  CHECK_THAT(pipeline::read_file(scratch / "study/report.html"), !Catch::Contains("<h2>Binder force"));
+}
+
+TEST_CASE("a variation that breaks a rule between keys is named, before anything is stamped",
+          "[pipeline][study][wrong input]") {
+  const Scratch scratch;
+  auto options = heddle::test::options_for(scratch / "study", heddle::test::small_stamping());
+  options.assignments.push_back("stamping_study={vary: ['tools.punch.radius: 60 mm; 71.9 mm']}");
+  try {
+    pipeline::study_case(options);
+    FAIL("the study began");
+  } catch (const InputError& error) {
+    REQUIRE(error.problems().size() == 1);
+    CHECK(error.problems()[0].id == "tools.die.opening_radius.fabric");
+  }
+  CHECK_FALSE(fs::exists(scratch / "study"));
+}
+
+TEST_CASE("the study of Dong et al., coarser: every stamping comes to its end, and speed changes nothing",
+          "[pipeline][study][slow]") {
+  const Scratch scratch;
+  pipeline::RunOptions options = heddle::test::options_for(scratch / "dong", {});
+  options.file = fs::path(heddle::test::source_dir) / "configs/studies/dong.yaml";
+  options.assignments = {"blank.spacing=20 mm", "process.steps=20"};
+  options.cache = HEDDLE_TEST_CACHE;
+  REQUIRE(pipeline::study_case(options) == pipeline::exit_done);
+  const CsvTable table = read_csv(scratch / "dong/table.csv");
+  REQUIRE(table.rows.size() == 1 + 10 + 4 + 4 + 3 + 3);
+  const auto column = [&](const std::string& name) {
+    return static_cast<std::size_t>(std::find(table.header.cells.begin(), table.header.cells.end(), name) -
+                                    table.header.cells.begin());
+  };
+  double slowest = 0.0, fastest = 0.0;
+  for (const CsvRow& row : table.rows) {
+    CAPTURE(row.cells[0]);
+    CHECK(row.cells[column("status")] == "done");
+    CHECK(std::stod(row.cells[column("energy_residual_max")]) < 0.01);
+    CHECK(std::stod(row.cells[column("force_balance_residual_max")]) < 1e-3);
+    const double force = std::stod(row.cells[column("peak_punch_force_N")]);
+    if (row.cells[0] == "process-punch-speed_scale-0p001") slowest = force;
+    if (row.cells[0] == "process-punch-speed_scale-1") fastest = force;
+  }
+  REQUIRE(slowest > 0.0);
+  CHECK(fastest == Approx(slowest).epsilon(0.01));
+}
