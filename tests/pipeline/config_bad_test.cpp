@@ -132,7 +132,7 @@ const std::vector<BadFile> bad_files{
     {"hole_without_radius", {{"blank.holes.rows", 7}}},
     {"key_is_a_list", {{"key", 4}}},
     {"key_of_another_block", {{"cell.fibre_density.unknown", 4}}},
-    {"later_effect", {{"effects.blank_cooling.later", 5}}},
+    {"later_effect", {{"effects.inter_tow_slip.later", 5}}},
     {"leading_zero", {{"forming.compaction_exponent.unit", 8}}},
     {"linear_form_not_positive", {{"friction.offset.positive", 4}}},
     {"linear_form_out_of_range", {{"friction.reference_hersey.range", 4}}},
