@@ -80,9 +80,9 @@ TEST_CASE("a flat sheet, a sheared one, a dome and a wave meet no part of themse
 TEST_CASE("a bend as tight as the fabric is thick touches itself nowhere, with legs to it these do",
           "[macroscale][self_contact]") {
   constexpr double h = 0.25e-3, r = 0.5 * thickness;
-  const auto bent = [&](int cells) {
+  const auto bent = [&](int cells, int round) {
     const Blank blank = make_blank({cells * h, 4 * h}, h * (1.0 + 1e-9));
-    const double arc = 9 * h, legs = 0.5 * (cells * h - arc);
+    const double arc = round * h, legs = 0.5 * (cells * h - arc);
     return pairs_of(blank, placed(blank, [&](double x, double y) -> Vector3d {
                       const double s = x + 0.5 * cells * h - legs, angle = std::clamp(s, 0.0, arc) / r;
                       const double before = std::min(s, 0.0), after = std::max(s - arc, 0.0);
@@ -90,8 +90,8 @@ TEST_CASE("a bend as tight as the fabric is thick touches itself nowhere, with l
                               r * (1.0 - std::cos(angle)) + after * std::sin(arc / r)};
                     }));
   };
-  CHECK(bent(9).empty());
-  CHECK_FALSE(bent(33).empty());
+  CHECK(bent(11, 11).empty());
+  CHECK_FALSE(bent(33, 9).empty());
 }
 
 TEST_CASE("legs of a hairpin meet each other, the faces that look at each other only",
@@ -247,14 +247,16 @@ TEST_CASE("what parts of a sheet do to each other adds up to no force and turns 
   const auto b = bench();
   const System& system = *b->system;
   const StepData apart = without_pairs(b->step);
-  const VectorXd force = system.gradient(b->step, b->state.x) - system.gradient(apart, b->state.x);
+  VectorXd x = b->state.x;
+  shake(x, 1e-5, 9);  // so that it rubs
+  const VectorXd force = system.gradient(b->step, x) - system.gradient(apart, x);
   Vector3d sum = Vector3d::Zero(), moment = Vector3d::Zero();
   double size = 0.0;
   for (int i = 0; i < b->scene.blank.nodes(); ++i) {
     const Vector3d f = force.segment<3>(3 * i);
     sum += f;
     size += f.norm();
-    moment += b->state.node(i).cross(f);
+    moment += b->state.node(i).cross(f);  // where the parts met
   }
   REQUIRE(size > 1.0);
   CHECK(sum.norm() < 1e-12 * size);
