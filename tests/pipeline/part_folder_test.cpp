@@ -88,7 +88,7 @@ TEST_CASE("a part that cannot go out is refused with what is missing and the com
   REQUIRE(pipeline::export_case(export_of(scratch / "bare", "abaqus")) == pipeline::exit_done);  // the law
   CHECK_FALSE(fs::exists(scratch / "bare" / "export" / "part_abaqus.inp"));
   pipeline::ExportOptions plies = export_of(scratch / "bare", "ccx");
-  plies.run.assignments = {"blank.plies=2"};
+  plies.run.assignments = {"blank.plies=2", "tools.die.opening_radius=76 mm"};
   CHECK(refused(plies) == Rules{"export.part.plies", "export.part.solid"});
   pipeline::ExportOptions cold = export_of(scratch / "a", "ccx");
   cold.stress_free = "118 mm";
