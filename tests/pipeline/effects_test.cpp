@@ -145,8 +145,8 @@ TEST_CASE("every effect of forming is off at its off value to the byte, and line
     double off, tiny;
   };
   // 1e-6, or that share of what an engineer would care about; the viscosity acts by rates of 1e-3 1/s. Shear
-  // reaches 12 degrees in this short stroke, and the blank is as warm as the reference of its
-  // softening.
+  // reaches 12 degrees in this short stroke, and the reference of softening that is usual is the temperature
+  // of this blank: it would do nothing.
   const std::vector<Effect> effects{
       {"shear_locking", "amplitude", "N/m", ", angle: 2 deg", 0.0, 1e-5},
       {"tension_shear_coupling", "amplitude", "", "", 0.0, 1e-6},

@@ -12,5 +12,4 @@ foreach(program test_run test_heat test_resume test_study test_shear_tests test_
   target_compile_definitions(${program} PRIVATE HEDDLE_TEST_CACHE="${CMAKE_CURRENT_BINARY_DIR}/cache")
 endforeach()
 add_dependencies(test_resume heddle)
-heddle_test(discover_stamping SOURCES discover_stamping_test.cpp discover_forming_test.cpp LIBRARIES heddle::run)
-target_compile_definitions(test_discover_stamping PRIVATE HEDDLE_TEST_CACHE="${CMAKE_CURRENT_BINARY_DIR}/cache")
+heddle_test(discover_stamping SOURCES discover_stamping_test.cpp LIBRARIES heddle::run)
