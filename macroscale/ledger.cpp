@@ -123,7 +123,8 @@ void add_drive(const System& system, const State& start, const State& end, int k
 // they meet at the end. Forces of the step know the first only; the difference stands with the numerical
 // dissipation.
 void account_plies(const System& system, const StepData& step, const State& end, StepLedger& ledger) {
-  if (system.ply_points().empty()) return;
+  // A sheet that had no other part within reach at the start does not touch one at the end (passage_of).
+  if (step.pairs.empty()) return;
   const Scene& scene = system.scene();
   const State& start = *step.start;
   const int row = static_cast<int>(scene.tools.size());

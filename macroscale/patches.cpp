@@ -78,7 +78,7 @@ Projection project(const std::array<int, 4>& quad, const VectorXd& x, const std:
   return {};
 }
 
-QuadFinder::QuadFinder(const Blank& blank, const Ply& ply, const VectorXd& x, double reach)
+QuadFinder::QuadFinder(const Blank& blank, const Ply& ply, const VectorXd& x, double reach, double radii)
     : first_(ply.first_quad) {
   const int count = ply.end_quad - ply.first_quad;
   centre_.resize(static_cast<std::size_t>(count));
@@ -92,8 +92,7 @@ QuadFinder::QuadFinder(const Blank& blank, const Ply& ply, const VectorXd& x, do
     low_ = low_.cwiseMin(c);
     high = high.cwiseMax(c);
   }
-  // Half a cell beyond the edge is less than another radius.
-  range_ = 2.0 * radius_ + reach;
+  range_ = radii * radius_ + reach;
   for (int d = 0; d < 3; ++d) boxes_[d] = 1 + static_cast<int>((high[d] - low_[d]) / range_);
   start_.assign(static_cast<std::size_t>(boxes_[0]) * boxes_[1] * boxes_[2] + 1, 0);
   std::vector<int> box(centre_.size());

@@ -36,7 +36,8 @@ Projection project(const std::array<int, 4>& quad, const Eigen::VectorXd& x,
 class QuadFinder {
  public:
   /// @param reach  how far off a quad a point may lie [m]
-  QuadFinder(const Blank& blank, const Ply& ply, const Eigen::VectorXd& x, double reach);
+  /// @param radii  how far beside its middle, in radii of the largest quad: 2 is beyond half a cell off it
+  QuadFinder(const Blank& blank, const Ply& ply, const Eigen::VectorXd& x, double reach, double radii = 2.0);
 
   double largest_radius() const { return radius_; }  ///< of a quad about its middle [m]
 

@@ -65,13 +65,13 @@ std::array<Meeting, 2> meetings_of(const Blank& blank, const Ply& ply, const Qua
                                    const VectorXd& x, int quad, double reach, double thickness) {
   std::array<Meeting, 2> found;
   const Vector3d here = middle_of(blank.quads[quad], x);
-  const double radius = finder.largest_radius(), far = radius + reach, near = neighbourhood * thickness;
+  const double radius = finder.largest_radius(), near = neighbourhood * thickness;
   finder.near(here, [&](int other, const Vector3d& middle) {
     // Most of what is near lies beside the cell in a smooth sheet, and is told by its plane.
     const Vector3d apart = here - middle;
     const double high = apart.dot(upwards[other]);
     const double aside2 = apart.squaredNorm() - high * high, most = 1.2 * radius + std::abs(high);
-    if (apart.squaredNorm() > far * far || aside2 > most * most) return;
+    if (aside2 > most * most) return;
     if (are_neighbours(blank, ply, quad, other, near)) return;
     const Projection at = project(blank.quads[other], x, normals, here);
     if (std::abs(at.h) > reach || !belongs(blank, ply, other, at)) return;
@@ -106,7 +106,7 @@ std::vector<PlyPair> pair_with_itself(const Blank& blank, std::span<const PlyPoi
   bool any = false;
   for (int k = 0; k < blank.plies(); ++k) {
     const Ply& ply = blank.ply(k);
-    const QuadFinder finder(blank, ply, x, reach);
+    const QuadFinder finder(blank, ply, x, reach, 1.0);
     tbb::parallel_for(tbb::blocked_range<int>(ply.first_quad, ply.end_quad, 64),
                       [&](const tbb::blocked_range<int>& range) {
                         for (int q = range.begin(); q != range.end(); ++q)
