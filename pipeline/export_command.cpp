@@ -37,7 +37,9 @@ friction::ExportedLaw law_of(const Case& a_case) {
     fabric = analyse_cell(*a_case.cell, a_case.fabric).fabric;
     law.log_area = fabric->contact.log_fraction.curves().front();  // the one of no shear
   }
-  law.model = run_friction_stage(a_case, fabric ? &*fabric : nullptr).model;
+  Case of_law = a_case;
+  if (!real) of_law.friction->contact_pressure = macroscale::ContactPressure::nominal;  // nothing reads it
+  law.model = run_friction_stage(of_law, fabric ? &*fabric : nullptr).model;
   return law;
 }
 
