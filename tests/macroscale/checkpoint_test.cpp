@@ -197,7 +197,7 @@ TEST_CASE("a stamping that fails says where its last attempt stood, and what sto
   REQUIRE(failure.worst.size() == 10);
   CHECK(std::is_sorted(failure.worst.begin(), failure.worst.end(),
                        [](const auto& a, const auto& b) { return a.residual > b.residual; }));
-  CHECK(failure.energies.size() == 9);
+  CHECK(failure.energies.size() == 10);
   CHECK(failure.not_finite.empty());
   // The same failure again, from the checkpoint it left.
   const StampingCheckpoint checkpoint = from(kept.checkpoints.back());

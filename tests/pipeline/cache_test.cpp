@@ -200,7 +200,8 @@ TEST_CASE("every key of the configuration is in the key of a stage, but for thos
   }
   CHECK(idle == std::vector<std::string>{"heddle", "name", "orientation_study.blanks",
                                          "orientation_study.friction", "stamping_study.binder_force",
-                                         "stamping_study.speed_scale", "stamping_study.models"});
+                                         "stamping_study.speed_scale", "stamping_study.models",
+                                         "stamping_study.vary"});
 }
 
 TEST_CASE("the key of a stage moves with what it reads and with nothing else", "[pipeline][cache]") {
