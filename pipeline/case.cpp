@@ -214,11 +214,15 @@ std::vector<std::string> stage_lines(const Case& a_case) {
     lines.push_back(fmt::format("study: by `heddle study` alone, {} weaves at {} shear angles",
                                 mesoscale::study::points(*a_case.cell, *a_case.study).size(),
                                 a_case.study->shear_angles.size()));
-  if (const auto study = stamping_study_of(a_case.settings))
-    lines.push_back(fmt::format(
-        "stamping study: by `heddle study` alone, {} models, {} speeds, {} binder forces{}",
-        study->models.size(), study->speed_scales.size(), study->binder_forces.size(),
-        study->variations.empty() ? "" : fmt::format(", {} variations", study->variations.size())));
+  if (const auto study = stamping_study_of(a_case.settings)) {
+    std::string what;
+    for (const auto& [count, name] : {std::pair{study->models.size(), "models"},
+                                      {study->speed_scales.size(), "speeds"},
+                                      {study->binder_forces.size(), "binder forces"},
+                                      {study->variations.size(), "variations"}})
+      if (count > 0) what += fmt::format("{}{} {}", what.empty() ? "" : ", ", count, name);
+    lines.push_back(fmt::format("stamping study: by `heddle study` alone, {}", what));
+  }
   if (a_case.discover) lines.push_back("discover: by `heddle discover` alone, in its --data");
   if (a_case.calibrate) lines.push_back("calibrate: by `heddle calibrate` alone, to its --data");
   return lines;
