@@ -121,7 +121,7 @@ struct Fault {
   FailureKind kind = FailureKind::search;
 };
 
-Fault fault_of(const System& system, const StepData& step, const State& end) {
+Fault fault_of(const System& system, const StepData& step, const State& end, bool may_cross) {
   const Scene& scene = system.scene();
   constexpr double closed = 89.0 * std::numbers::pi / 180.0;
   for (std::size_t q = 0; q < scene.blank.quads.size(); ++q) {
@@ -150,10 +150,12 @@ Fault fault_of(const System& system, const StepData& step, const State& end) {
         approach > 0.5 * scene.fabric->thickness) {
       const PlyPoint& point = system.ply_points()[k];
       const bool folded = point.against == scene.blank.ply_of_quad(point.quad);
+      if (folded && may_cross) continue;
       return {fmt::format("cell {} is pressed {:.3f} mm into {}, through its middle", point.quad,
                           1e3 * approach, folded ? "another part of the sheet" : "the next ply"),
               folded ? FailureKind::folded : FailureKind::pressed_through};
     }
+  if (may_cross) return {};
   return {passage_of(system, step, end), FailureKind::folded};
 }
 
@@ -249,7 +251,7 @@ StepSummary advance(System& system, const State& state, double dt, const std::ve
   }
   if (summary.newton_iterations > 0) polish(system, step, x, summary);
   accept(system, step, x, end);
-  const Fault fault = fault_of(system, step, end);
+  const Fault fault = fault_of(system, step, end, options.may_cross);
   summary.reason = fault.reason;
   summary.kind = fault.kind;
   summary.converged = summary.reason.empty();

@@ -22,6 +22,7 @@ struct SolveOptions {
   int newton_limit = 200;            ///< iterations a pass; slip that sets in as a front takes one a node
   int lag_limit_iterations = 16;     ///< updates of the friction loads a step
   int line_search_limit = 30;
+  bool may_cross = false;           ///< a step that takes one part of the sheet through another is accepted
   std::function<bool()> stop = {};  ///< asked before each Newton iteration; true ends the step (empty: never)
 };
 

@@ -38,6 +38,10 @@ double smoothing_of_dwell(const ProcessSpec& process, double of_stroke) {
   return std::min(of_stroke, 2e-4 * process.stroke / process.press.dwell);
 }
 
+// A part of a step is tried in so many pieces before parts of the sheet may pass through each other. Creases
+// narrower than a cell do, however short the step: that is told (self_crossings), and the run goes on.
+constexpr long insistence = 16;
+
 // How a step, or the whole run, ended.
 enum class Ending { done, failed, stopped };
 
@@ -236,6 +240,7 @@ class Run {
     while (done < pieces) {
       const double share = static_cast<double>(done + 1) / static_cast<double>(pieces);
       const double next = time_at_step(spec_.process, step, share);
+      options_.may_cross = pieces >= insistence * parts;
       const Ending ending = advance_part(next - now_.state.time, next);
       if (ending == Ending::stopped) return ending;
       if (ending == Ending::done) {
@@ -305,17 +310,9 @@ class Run {
 
   // The observer comes first: what it writes belongs to the step that a checkpoint says is done.
   void show_and_keep() {
-    if (control_.observe) show();
+    if (control_.observe) control_.observe(now_.step, all_steps(spec_.process), now_.row, now_.blank);
     whole_ = now_;
     keep(now_, false);
-  }
-
-  void show() const {
-    const int steps = all_steps(spec_.process);
-    if (spec_.blank.symmetry == Symmetry::none)
-      control_.observe(now_.step, steps, now_.row, now_.blank);
-    else
-      control_.observe(now_.step, steps, now_.row, whole_of(now_.blank, spec_.blank).state);
   }
 
   void keep(const StampingCheckpoint& checkpoint, bool last) const {

@@ -330,7 +330,8 @@ struct StampingResult {
   std::optional<StampingFailure> failure;  ///< present where summary.failure is
 };
 
-/// Called after each accepted step, and once with step 0 when the binder has closed.
+/// Called after each accepted step, and once with step 0 when the binder has closed. The blank is the piece
+/// that is computed.
 using StampingObserver = std::function<void(int step, int steps, const HistoryRow&, const BlankState&)>;
 
 struct StampingCheckpoint;  // macroscale/checkpoint.h

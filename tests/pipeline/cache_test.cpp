@@ -94,6 +94,22 @@ TEST_CASE("stages out of the cache give the same bytes as stages that are run", 
   CHECK(first_difference(plain, contents(scratch / "take")) == "");
 }
 
+TEST_CASE("a quarter out of the cache shows the whole blank again", "[pipeline][cache]") {
+  const Scratch scratch;
+  const auto settings = with(small_stamping(), "blank.symmetry=quarter");
+  for (const char* name : {"fill", "take"})
+    REQUIRE(pipeline::run_case(cached(scratch, name, settings)) == pipeline::exit_done);
+  REQUIRE(pipeline::run_case(options_for(scratch / "whole", small_stamping())) == pipeline::exit_done);
+  CHECK(reused(scratch / "take") == "mesoscale friction macroscale");
+  CHECK(first_difference(contents(scratch / "fill"), contents(scratch / "take")) == "");
+  const auto cells = [&](const char* name) {
+    const std::string vtu = pipeline::read_file(scratch / name / "macroscale/blank_0000.vtu");
+    const auto from = vtu.find("NumberOfPoints");
+    return vtu.substr(from, vtu.find('>', from) - from);
+  };
+  CHECK(cells("take") == cells("whole"));
+}
+
 TEST_CASE("an entry that is cut short, changed, foreign or unreadable is said in the log and not used",
           "[pipeline][cache][wrong input]") {
   const Scratch scratch;
