@@ -389,6 +389,7 @@ TEST_CASE("the library of a stamping holds what its law admits and says what it 
   const std::vector<std::string> set = pipeline::keys_of(
       StampingCondition{"fast", 1.4, 650.0, 358.15, 453.15, 10.0 * std::numbers::pi / 180.0});
   keys.insert(keys.end(), set.begin(), set.end());
+  keys.emplace_back("blank.symmetry=none");  // the condition turns the blank
   const pipeline::Case moved = pipeline::read_case(file, keys);
   CHECK(std::get<friction::Coulomb>(moved.friction->model.law).coefficient == 0.1 + 0.2);
   CHECK(moved.stamping->shear_rate == 1.0 / 3.0);
