@@ -13,7 +13,7 @@ for assignment in "$@"; do hidden="$hidden --set $assignment"; done
 for speed in 0.5 0.7 1 1.4 2; do
   # shellcheck disable=SC2086
   "$program" run configs/discover/stamping.yaml -o "$folder/$speed" --quiet --force --set process.punch.speed_scale=$speed \
-    --set blank.spacing='6 mm' --set process.steps=48 --set blank.grid_error=off --set friction.coefficient=0.28 \
+    --set blank.spacing='6 mm' --set process.steps=48 --set blank.grid_error=off --set blank.symmetry=none --set friction.coefficient=0.28 \
     --set forming.tow_friction=0.23 $hidden > "$folder.$speed.log" 2>&1 || { cat "$folder.$speed.log" >&2; exit 1; }
 done
 echo "condition_id,sample_id,day_id,speed_scale,binder_force_N,tool_temperature_C,blank_temperature_C,orientation_deg,punch_displacement_mm,punch_force_N"
