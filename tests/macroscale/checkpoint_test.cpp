@@ -9,44 +9,29 @@
 
 #include "macroscale/checkpoint.h"
 #include "macroscale/stamping.h"
+#include "tests/macroscale/kept_stamping.h"
 #include "tests/macroscale/sample_fabric.h"
 #include "tests/macroscale/sample_stamping.h"
 
 using namespace heddle::macroscale;
-using heddle::Hdf5Reader;
-using heddle::Hdf5Writer;
+using heddle::test::bytes_of;
 using heddle::test::coarse_stamping;
 using heddle::test::coulomb;
+using heddle::test::from;
+using heddle::test::Kept;
 using heddle::test::make_fabric;
+using heddle::test::run_and_keep;
 
 namespace {
-
-std::string bytes_of(const StampingCheckpoint& checkpoint) {
-  Hdf5Writer file;
-  write(file, "/stamping", checkpoint);
-  return file.finish();
-}
-
-StampingCheckpoint from(const std::string& bytes) {
-  return read_checkpoint(Hdf5Reader(bytes), "/stamping");
-}
-
-struct Kept {
-  std::vector<std::string> checkpoints;  ///< in the order in which they were offered
-  StampingResult result;
-};
 
 /// As stiff through the thickness as most tests have it, and so soft that the punch reaches its middle.
 constexpr double firm = 5e8, soft = 2e7;  // [Pa/m]
 
 Kept run(const StampingSpec& spec, StampingControl control = {}, double contact_stiffness = firm,
          const heddle::friction::Model& model = coulomb()) {
-  Kept kept;
-  control.keep = [&](const StampingCheckpoint& c, bool) { kept.checkpoints.push_back(bytes_of(c)); };
-  kept.result = run_stamping(
+  return run_and_keep(
       spec, make_fabric({.rate_consistency = 5.0, .contact_stiffness = contact_stiffness, .table_end = 8e-4}),
       model, control);
-  return kept;
 }
 
 /// Slip resistance that softens, and effects whose mu follows age and load times slip.

@@ -12,13 +12,17 @@
 #include "macroscale/checkpoint.h"
 #include "macroscale/ply_state.h"
 #include "macroscale/stamping.h"
+#include "tests/macroscale/kept_stamping.h"
 #include "tests/macroscale/random_stampings.h"
 #include "tests/macroscale/sample_fabric.h"
 #include "tests/macroscale/sample_stamping.h"
 
 using namespace heddle::macroscale;
+using heddle::test::bytes_of;
 using heddle::test::coulomb;
+using heddle::test::Kept;
 using heddle::test::make_fabric;
+using heddle::test::run_and_keep;
 
 namespace {
 
@@ -31,23 +35,8 @@ StampingSpec small_case(const std::vector<double>& layup_in_degrees) {
   return spec;
 }
 
-std::string bytes_of(const StampingCheckpoint& checkpoint) {
-  heddle::Hdf5Writer file;
-  write(file, "/stamping", checkpoint);
-  return file.finish();
-}
-
-struct Kept {
-  std::vector<std::string> checkpoints;
-  StampingResult result;
-};
-
 Kept run(const StampingSpec& spec, StampingControl control = {}) {
-  Kept kept;
-  control.keep = [&](const StampingCheckpoint& c, bool) { kept.checkpoints.push_back(bytes_of(c)); };
-  kept.result =
-      run_stamping(spec, make_fabric({.rate_consistency = 5.0, .table_end = 8e-4}), coulomb(), control);
-  return kept;
+  return run_and_keep(spec, make_fabric({.rate_consistency = 5.0, .table_end = 8e-4}), coulomb(), control);
 }
 
 }  // namespace
@@ -72,8 +61,7 @@ TEST_CASE(
   // The check can fail: without the heat of the plies the ledger is open.
   CHECK(whole.result.history.back().friction_plies > 0.01 * whole.result.history.back().work_punch);
 
-  const StampingCheckpoint checkpoint =
-      read_checkpoint(heddle::Hdf5Reader(whole.checkpoints[2]), "/stamping");
+  const StampingCheckpoint checkpoint = heddle::test::from(whole.checkpoints[2]);
   CHECK((bytes_of(checkpoint) == whole.checkpoints[2]));
   StampingControl control;
   control.resume_from = &checkpoint;

@@ -5,25 +5,25 @@
 #include <cmath>
 #include <memory>
 #include <numbers>
-#include <random>
 
 #include <Eigen/Geometry>
 
 #include "macroscale/ledger.h"
 #include "macroscale/system.h"
-#include "tests/derivative_check.h"
-#include "tests/macroscale/matrix_product.h"
 #include "tests/macroscale/quasi_static.h"
 #include "tests/macroscale/sample_fabric.h"
+#include "tests/macroscale/slope_checks.h"
 
 using namespace heddle::macroscale;
 using Eigen::Vector3d;
 using Eigen::VectorXd;
-using heddle::test::derivative_gap;
+using heddle::test::check_slopes;
+using heddle::test::check_slopes_of_pairs;
 using heddle::test::make_fabric;
-using heddle::test::multiply;
 using heddle::test::run_at_rest;
 using heddle::test::run_steps;
+using heddle::test::shake;
+using heddle::test::without_pairs;
 
 namespace {
 
@@ -65,12 +65,6 @@ std::unique_ptr<Bench> bench() {
   return b;
 }
 
-void shake(VectorXd& x, double size, unsigned seed) {
-  std::mt19937 random(seed);
-  std::uniform_real_distribution<double> uniform(-size, size);
-  for (double& value : x) value += uniform(random);
-}
-
 void load_all(Bench& b, const System& system) {
   b.step.friction.assign(1, std::vector<FrictionPoint>(b.step.pairs.size()));
   for (std::size_t k = 0; k < b.step.pairs.size(); ++k) {
@@ -99,44 +93,8 @@ TEST_CASE("with plies in contact the residual is the slope of the potential, the
   VectorXd x = b->state.x, d = VectorXd::Zero(x.size());
   shake(x, 5e-5, 7);
   shake(d, 1.0, 11);
-  const VectorXd g = system.gradient(b->step, x);
-  const auto potential = [&](double t) {
-    const VectorXd y = x + t * d;
-    return system.potential(b->step, y).total() + system.friction_difference(b->step, x, y);
-  };
-  CHECK(derivative_gap(potential, 0.0, 1e-4, g.dot(d)) < 1e-6);
-  CHECK(derivative_gap(potential, 0.0, 1e-4, 1.01 * g.dot(d)) > 1e-4);
-
-  // The part between plies by itself: the whole could hide its faults behind stiff tows.
-  std::vector<PlyPair> none = b->step.pairs;
-  for (PlyPair& pair : none) pair.quad = -1;
-  StepData apart = b->step;
-  apart.pairs = none;
-  for (FrictionPoint& point : apart.friction[0]) point.load = 0.0;
-  const double slope = (g - system.gradient(apart, x)).dot(d);
-  const auto between = [&](double t) {
-    const VectorXd y = x + t * d;
-    return system.potential(b->step, y).compaction_plies + system.friction_difference(b->step, x, y);
-  };
-  CHECK(derivative_gap(between, 0.0, 1e-4, slope) < 1e-6);
-  CHECK(derivative_gap(between, 0.0, 1e-4, 1.01 * slope) > 1e-3);
-
-  system.assemble(b->step, x, Filter::none);
-  const VectorXd h = multiply(system.solver().pattern(), system.solver().values(), d);
-  system.assemble(apart, x, Filter::none);
-  const VectorXd of_plies = h - multiply(system.solver().pattern(), system.solver().values(), d);
-  const auto residual = [&](double t) -> VectorXd {
-    const VectorXd y = x + t * d;
-    return system.gradient(b->step, y) - system.gradient(apart, y);
-  };
-  double best = 1e300, best_off = 1e300;
-  for (double t : {1e-6, 1e-7, 1e-8}) {
-    const VectorXd difference = (residual(t) - residual(-t)) / (2.0 * t);
-    best = std::min(best, (difference - of_plies).norm() / of_plies.norm());
-    best_off = std::min(best_off, (difference - 1.01 * of_plies).norm() / of_plies.norm());
-  }
-  CHECK(best < 1e-6);
-  CHECK(best_off > 1e-3);
+  check_slopes(system, b->step, x, d);
+  check_slopes_of_pairs(system, b->step, x, d);
 }
 
 TEST_CASE("plies that turn together do not slip past each other, and moving them together stores nothing",
@@ -181,9 +139,7 @@ TEST_CASE("what plies do to each other adds up to no force and turns no stack",
   load_all(*b, system);
   VectorXd x = b->state.x;
   shake(x, 1e-5, 9);
-  StepData apart = b->step;
-  for (PlyPair& pair : apart.pairs) pair.quad = -1;
-  for (FrictionPoint& point : apart.friction[0]) point.load = 0.0;
+  StepData apart = without_pairs(b->step);
   b->step.target = apart.target = x;
   const VectorXd force = system.gradient(b->step, x) - system.gradient(apart, x);
   Vector3d sum = Vector3d::Zero();

@@ -12,6 +12,7 @@
 #include "macroscale/stamping.h"
 #include "macroscale/stamping_scene.h"
 #include "macroscale/system.h"
+#include "tests/macroscale/kept_stamping.h"
 #include "tests/macroscale/sample_fabric.h"
 #include "tests/macroscale/sample_stamping.h"
 
@@ -294,10 +295,7 @@ TEST_CASE("a run that was kept before its release goes on to the same released b
   std::vector<StampingCheckpoint> kept;
   StampingControl control;
   control.keep = [&](const StampingCheckpoint& c, bool) {
-    heddle::Hdf5Writer file;
-    write(file, "/stamping", c);
-    const std::string bytes = file.finish();
-    kept.push_back(read_checkpoint(heddle::Hdf5Reader(bytes), "/stamping"));
+    kept.push_back(heddle::test::from(heddle::test::bytes_of(c)));
   };
   const auto fabric = make_fabric({});
   const auto whole = run_stamping(spec, fabric, coulomb(), control);

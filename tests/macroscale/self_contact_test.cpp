@@ -16,23 +16,24 @@
 #include "macroscale/ledger.h"
 #include "macroscale/quality.h"
 #include "macroscale/system.h"
-#include "tests/derivative_check.h"
 #include "tests/macroscale/folded_strip.h"
-#include "tests/macroscale/matrix_product.h"
+#include "tests/macroscale/kept_stamping.h"
 #include "tests/macroscale/quasi_static.h"
 #include "tests/macroscale/sample_fabric.h"
+#include "tests/macroscale/slope_checks.h"
 
 using namespace heddle::macroscale;
 using Eigen::Vector3d;
 using Eigen::VectorXd;
-using heddle::test::derivative_gap;
+using heddle::test::check_slopes_of_pairs;
 using heddle::test::fold;
 using heddle::test::folded_strip;
 using heddle::test::FoldedStrip;
 using heddle::test::make_fabric;
-using heddle::test::multiply;
 using heddle::test::run_at_rest;
 using heddle::test::run_steps;
+using heddle::test::shake;
+using heddle::test::without_pairs;
 
 namespace {
 
@@ -51,13 +52,6 @@ std::vector<PlyPair> pairs_of(const Blank& blank, const VectorXd& x, double reac
 }
 
 // Part of a step that two parts of a sheet have in it: none of them in the copy.
-StepData without_pairs(const StepData& step) {
-  StepData apart = step;
-  for (PlyPair& pair : apart.pairs) pair.quad = -1;
-  for (FrictionPoint& point : apart.friction.back()) point.load = 0.0;
-  return apart;
-}
-
 }  // namespace
 
 TEST_CASE("a flat sheet, a sheared one, a dome and a wave meet no part of themselves",
@@ -196,12 +190,6 @@ std::unique_ptr<Bench> bench() {
   return b;
 }
 
-void shake(VectorXd& x, double size, unsigned seed) {
-  std::mt19937 random(seed);
-  std::uniform_real_distribution<double> uniform(-size, size);
-  for (double& value : x) value += uniform(random);
-}
-
 }  // namespace
 
 TEST_CASE(
@@ -212,34 +200,10 @@ TEST_CASE(
   const auto met = std::count_if(b->step.pairs.begin(), b->step.pairs.end(),
                                  [](const PlyPair& pair) { return pair.quad >= 0; });
   CHECK(met >= 2 * 5 * 4);
-  const StepData apart = without_pairs(b->step);
   VectorXd x = b->state.x, d = VectorXd::Zero(x.size());
   shake(x, 5e-5, 7);
   shake(d, 1.0, 11);
-  const double slope = (system.gradient(b->step, x) - system.gradient(apart, x)).dot(d);
-  const auto between = [&](double t) {
-    const VectorXd y = x + t * d;
-    return system.potential(b->step, y).compaction_plies + system.friction_difference(b->step, x, y);
-  };
-  CHECK(derivative_gap(between, 0.0, 1e-4, slope) < 1e-6);
-  CHECK(derivative_gap(between, 0.0, 1e-4, 1.01 * slope) > 1e-3);
-
-  system.assemble(b->step, x, Filter::none);
-  const VectorXd h = multiply(system.solver().pattern(), system.solver().values(), d);
-  system.assemble(apart, x, Filter::none);
-  const VectorXd of_pairs = h - multiply(system.solver().pattern(), system.solver().values(), d);
-  const auto residual = [&](double t) -> VectorXd {
-    const VectorXd y = x + t * d;
-    return system.gradient(b->step, y) - system.gradient(apart, y);
-  };
-  double best = 1e300, best_off = 1e300;
-  for (double t : {1e-6, 1e-7, 1e-8}) {
-    const VectorXd difference = (residual(t) - residual(-t)) / (2.0 * t);
-    best = std::min(best, (difference - of_pairs).norm() / of_pairs.norm());
-    best_off = std::min(best_off, (difference - 1.01 * of_pairs).norm() / of_pairs.norm());
-  }
-  CHECK(best < 1e-6);
-  CHECK(best_off > 1e-3);
+  check_slopes_of_pairs(system, b->step, x, d);
 }
 
 TEST_CASE("what parts of a sheet do to each other adds up to no force and turns nothing",
@@ -415,9 +379,7 @@ State through_checkpoint(const Scene& scene, const System& system, const State& 
   StampingCheckpoint checkpoint;
   checkpoint.state = state;
   checkpoint.blank = blank_state(system, state, nullptr);
-  heddle::Hdf5Writer file;
-  write(file, "/flight", checkpoint);
-  const StampingCheckpoint read = read_checkpoint(heddle::Hdf5Reader(file.finish()), "/flight");
+  const StampingCheckpoint read = heddle::test::from(heddle::test::bytes_of(checkpoint));
   StateSizes sizes;
   sizes.tools = 1;
   CHECK_FALSE(fault_of(read, scene.blank, scene.contact_sites, 0, sizes).empty());  // it has no room for it

@@ -11,10 +11,9 @@
 #include "macroscale/stamping_scene.h"
 #include "macroscale/symmetric_piece.h"
 #include "macroscale/system.h"
-#include "tests/derivative_check.h"
-#include "tests/macroscale/matrix_product.h"
 #include "tests/macroscale/sample_fabric.h"
 #include "tests/macroscale/sample_stamping.h"
+#include "tests/macroscale/slope_checks.h"
 
 using namespace heddle::macroscale;
 using Eigen::Vector3d;
@@ -218,19 +217,7 @@ TEST_CASE("tows that cross a plane of symmetry bend there as in the whole: slope
   VectorXd d(x.size());
   for (Eigen::Index k = 0; k < d.size(); ++k)
     d[k] = piece.held[static_cast<std::size_t>(k)] ? 0.0 : std::sin(1.0 + 3.0 * static_cast<double>(k));
-  const VectorXd g = part.gradient(step, x);
-  const auto potential = [&](double t) { return part.potential(step, VectorXd(x + t * d)).total(); };
-  CHECK(heddle::test::derivative_gap(potential, 0.0, 1e-5, g.dot(d)) < 1e-6);
-  CHECK(heddle::test::derivative_gap(potential, 0.0, 1e-5, 1.01 * g.dot(d)) > 1e-4);
-  part.assemble(step, x, Filter::none);
-  const VectorXd h = heddle::test::multiply(part.solver().pattern(), part.solver().values(), d);
-  double best = 1e300;
-  for (const double t : {1e-6, 1e-7, 1e-8}) {
-    const VectorXd difference =
-        (part.gradient(step, VectorXd(x + t * d)) - part.gradient(step, VectorXd(x - t * d))) / (2.0 * t);
-    best = std::min(best, (difference - h).norm() / h.norm());
-  }
-  CHECK(best < 1e-6);
+  heddle::test::check_slopes(part, step, x, d);
 }
 
 TEST_CASE("a blank or press that is not its own mirror image is refused by name", "[macroscale][symmetry]") {

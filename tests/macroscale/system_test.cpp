@@ -6,14 +6,14 @@
 
 #include "macroscale/ledger.h"
 #include "macroscale/system.h"
-#include "tests/derivative_check.h"
 #include "tests/macroscale/matrix_product.h"
 #include "tests/macroscale/sample_fabric.h"
+#include "tests/macroscale/slope_checks.h"
 
 using namespace heddle::macroscale;
 using Eigen::Vector3d;
 using Eigen::VectorXd;
-using heddle::test::derivative_gap;
+using heddle::test::check_slopes;
 using heddle::test::make_fabric;
 using heddle::test::multiply;
 
@@ -86,23 +86,7 @@ TEST_CASE("the residual is the slope of the incremental potential, the matrix th
     for (int i = 0; i < system.contacts(); ++i) b->step.contact_shear.push_back(0.1 * (i % 9) - 0.4);
   }
   const VectorXd x = shaken(*b, 2e-4), d = shaken(*b, 1.0) - b->state.x;
-  const VectorXd g = system.gradient(b->step, x);
-  const auto potential = [&](double t) {
-    const VectorXd y = x + t * d;
-    return system.potential(b->step, y).total() + system.friction_difference(b->step, x, y);
-  };
-  CHECK(derivative_gap(potential, 0.0, 1e-4, g.dot(d)) < 1e-6);
-  CHECK(derivative_gap(potential, 0.0, 1e-4, 1.01 * g.dot(d)) > 1e-4);
-
-  system.assemble(b->step, x, Filter::none);
-  const VectorXd h = multiply(system.solver().pattern(), system.solver().values(), d);
-  double best = 1e300;
-  for (double t : {1e-6, 1e-7, 1e-8}) {
-    const VectorXd difference =
-        (system.gradient(b->step, x + t * d) - system.gradient(b->step, x - t * d)) / (2.0 * t);
-    best = std::min(best, (difference - h).norm() / h.norm());
-  }
-  CHECK(best < 1e-6);
+  check_slopes(system, b->step, x, d);
 }
 
 TEST_CASE("a held unknown has no residual and an identity row", "[macroscale][system]") {

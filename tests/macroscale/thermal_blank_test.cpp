@@ -10,9 +10,12 @@
 #include "macroscale/stamping.h"
 #include "macroscale/stamping_scene.h"
 #include "macroscale/system.h"
+#include "tests/macroscale/kept_stamping.h"
 #include "tests/macroscale/sample_fabric.h"
 
 using namespace heddle::macroscale;
+using heddle::test::bytes_of;
+using heddle::test::from;
 using heddle::test::make_fabric;
 
 namespace {
@@ -39,16 +42,6 @@ heddle::friction::Model law_of_the_film() {
 
 StampingResult run(const StampingSpec& spec, const StampingControl& control = {}) {
   return run_stamping(spec, fabric(), law_of_the_film(), control);
-}
-
-std::string bytes_of(const StampingCheckpoint& checkpoint) {
-  heddle::Hdf5Writer file;
-  write(file, "/stamping", checkpoint);
-  return file.finish();
-}
-
-StampingCheckpoint from(const std::string& bytes) {
-  return read_checkpoint(heddle::Hdf5Reader(bytes), "/stamping");
 }
 
 }  // namespace

@@ -6,18 +6,16 @@
 #include "macroscale/quality.h"
 #include "macroscale/stamping.h"
 #include "macroscale/system.h"
-#include "tests/derivative_check.h"
-#include "tests/macroscale/matrix_product.h"
 #include "tests/macroscale/sample_fabric.h"
 #include "tests/macroscale/sample_stamping.h"
+#include "tests/macroscale/slope_checks.h"
 
 using namespace heddle::macroscale;
 using Eigen::VectorXd;
+using heddle::test::check_slopes;
 using heddle::test::coarse_stamping;
 using heddle::test::coulomb;
-using heddle::test::derivative_gap;
 using heddle::test::make_fabric;
-using heddle::test::multiply;
 
 namespace {
 
@@ -112,20 +110,5 @@ TEST_CASE("the force between three tools of unlike coefficients is the slope of 
   VectorXd d(state.x.size()), x = state.x;
   for (double& value : d) value = uniform(random);
   for (double& value : x) value += 2e-4 * uniform(random);
-  const VectorXd g = system.gradient(step, x);
-  const auto potential = [&](double t) {
-    const VectorXd y = x + t * d;
-    return system.potential(step, y).total() + system.friction_difference(step, x, y);
-  };
-  CHECK(derivative_gap(potential, 0.0, 1e-4, g.dot(d)) < 1e-6);
-  CHECK(derivative_gap(potential, 0.0, 1e-4, 1.01 * g.dot(d)) > 1e-4);
-  system.assemble(step, x, Filter::none);
-  const VectorXd h = multiply(system.solver().pattern(), system.solver().values(), d);
-  double best = 1e300;
-  for (const double t : {1e-6, 1e-7, 1e-8}) {
-    const VectorXd difference =
-        (system.gradient(step, x + t * d) - system.gradient(step, x - t * d)) / (2.0 * t);
-    best = std::min(best, (difference - h).norm() / h.norm());
-  }
-  CHECK(best < 1e-6);
+  check_slopes(system, step, x, d);
 }
