@@ -304,6 +304,7 @@ void write_shared(Hdf5Writer& file, const std::string& group, const BlankState& 
     plies.push_back(
         {p.nu, p.nv, p.first_node, p.end_node, p.first_quad, p.end_quad, p.first_edge, p.end_edge});
   if (!plies.empty()) write_rows(file, group + "/plies", plies);
+  if (blank.symmetry != Symmetry::none) file.write(group + "/symmetry", static_cast<int>(blank.symmetry));
   file.write(group + "/holes", static_cast<int>(blank.outline.holes.size()));
   for (std::size_t k = 0; k < blank.outline.holes.size(); ++k)
     write_rows(file, fmt::format("{}/hole_{}", group, k), blank.outline.holes[k]);
@@ -331,6 +332,12 @@ BlankState read_shared(const Hdf5Reader& file, const std::string& group) {
   if (file.has(group + "/plies"))
     for (const auto& p : read_index_rows<8>(file, group + "/plies"))
       blank.plies.push_back({p[0], p[1], p[2], p[3], p[4], p[5], p[6], p[7]});
+  if (file.has(group + "/symmetry")) {
+    const int piece = file.integer(group + "/symmetry");
+    if (piece < 0 || piece > static_cast<int>(Symmetry::quarter))
+      throw Hdf5Error(group + "/symmetry is no piece of a blank");
+    blank.symmetry = static_cast<Symmetry>(piece);
+  }
   for (int k = 0; k < file.integer(group + "/holes"); ++k)
     blank.outline.holes.push_back(read_rows<2>(file, fmt::format("{}/hole_{}", group, k)));
   return blank;
@@ -381,6 +388,7 @@ BlankState read_instant(const Hdf5Reader& file, const std::string& group, const 
   BlankState blank;
   blank.nu = shared.nu;
   blank.nv = shared.nv;
+  blank.symmetry = shared.symmetry;
   blank.plies = shared.plies;
   blank.grid = shared.grid;
   blank.reference = shared.reference;

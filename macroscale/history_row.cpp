@@ -69,11 +69,8 @@ void measure_blank(HistoryRow& row, const BlankState& blank, const State& state,
   for (const auto& strain : blank.tow_strain)
     row.tow_strain_max = std::max({row.tow_strain_max, strain[0], strain[1]});
   const double thickness = scene.fabric->thickness;
-  const Symmetry symmetry = scene.blank.symmetry;
-  const Folds folds =
-      symmetry == Symmetry::none
-          ? find_folds(blank, thickness)
-          : find_folds(whole_of(blank, symmetry, std::abs(scene.blank.warp[0]) > 0.5).state, thickness);
+  const Folds folds = blank.symmetry == Symmetry::none ? find_folds(blank, thickness)
+                                                       : find_folds(whole_of(blank).state, thickness);
   row.folded_nodes = folds.folded;
   row.near_nodes = folds.near;
   row.self_crossings = folds.crossings;

@@ -178,6 +178,7 @@ BlankState blank_state(const System& system, const State& state, const StepData*
   BlankState s;
   s.nu = blank.nu;
   s.nv = blank.nv;
+  s.symmetry = blank.symmetry;
   s.grid = blank.grid;
   s.quads = blank.quads;
   s.pieces = blank.pieces;

@@ -83,8 +83,8 @@ void describe_iterate(StampingFailure& failure, const System& system, const Step
 }
 
 // A piece's failure in the blank that its files show. Worst nodes keep their places, which are in the piece.
-void show_whole(StampingFailure& failure, const BlankSpec& spec) {
-  WholeBlank whole = whole_of(failure.blank, spec);
+void show_whole(StampingFailure& failure) {
+  WholeBlank whole = whole_of(failure.blank);
   std::vector<double> residual;
   for (const int n : whole.node) residual.push_back(failure.residual[static_cast<std::size_t>(n)]);
   for (StampingFailure::Unknown& unknown : failure.worst)
@@ -124,8 +124,7 @@ void take_over(StampingResult& result, const StampingSpec& spec, const Blank& bl
   result.history = std::move(at.history);
   result.hold = std::move(at.hold);
   s.release = std::move(at.release);
-  result.final_state =
-      spec.blank.symmetry == Symmetry::none ? std::move(at.blank) : whole_of(at.blank, spec.blank).state;
+  result.final_state = at.blank.symmetry == Symmetry::none ? std::move(at.blank) : whole_of(at.blank).state;
   summarise(result, blank, at.state, at.peak_force_balance);
   if (!is_symmetric(spec)) s.symmetry_gap_shear = s.symmetry_gap_draw_in = -1.0;
 }
@@ -385,7 +384,7 @@ class Run {
       try {
         failure.blank = blank_state(system_, state_at_iterate(system_, attempt_), nullptr);
         describe_iterate(failure, system_, attempt_);
-        if (spec_.blank.symmetry != Symmetry::none) show_whole(failure, spec_.blank);
+        if (failure.blank.symmetry != Symmetry::none) show_whole(failure);
       } catch (const NumericalError& error) {  // the law itself has no value there: that is worth saying
         failure.not_finite.push_back(error.what());
       }

@@ -194,6 +194,7 @@ struct PlyRange {
 /// first.
 struct BlankState {
   int nu = 0, nv = 0;                             ///< cells of the grid along warp and weft, before trimming
+  Symmetry symmetry = Symmetry::none;             ///< which piece of the blank it is
   std::vector<PlyRange> plies;                    ///< empty: one ply
   std::vector<std::array<int, 2>> grid;           ///< (i, j) of each node
   std::vector<std::array<double, 2>> reference;   ///< [m]

@@ -15,6 +15,12 @@ struct Image {
   double sign() const { return axis[0] == axis[1] ? 1.0 : -1.0; }
 };
 
+// On planes of symmetry tows run along x and y.
+bool warp_runs_along_x(const BlankState& piece) {
+  const auto &from = piece.reference[piece.quads.front()[0]], &to = piece.reference[piece.quads.front()[1]];
+  return std::abs(to[0] - from[0]) > std::abs(to[1] - from[1]);
+}
+
 std::vector<Image> images_of(Symmetry symmetry, bool warp_along_x) {
   std::vector<Image> images;
   for (const bool x : {false, true})
@@ -86,13 +92,13 @@ void take(const std::vector<Value>& of_piece, const std::vector<int>& node, std:
 
 }  // namespace
 
-WholeBlank whole_of(const BlankState& piece, Symmetry symmetry, bool warp_along_x) {
-  if (symmetry == Symmetry::none) {
+WholeBlank whole_of(const BlankState& piece) {
+  if (piece.symmetry == Symmetry::none) {
     WholeBlank same{piece, {}};
     for (std::size_t n = 0; n < piece.grid.size(); ++n) same.node.push_back(static_cast<int>(n));
     return same;
   }
-  const std::vector<Image> images = images_of(symmetry, warp_along_x);
+  const std::vector<Image> images = images_of(piece.symmetry, warp_runs_along_x(piece));
   Places nodes(piece.nu + 1, piece.nv + 1), cells(piece.nu, piece.nv);
   // The piece itself comes first, so that nodes on a plane are its own.
   for (const Image& image : images) {
@@ -154,10 +160,6 @@ WholeBlank whole_of(const BlankState& piece, Symmetry symmetry, bool warp_along_
   take(piece.heat.mean, whole.node, s.heat.mean);
   take(piece.heat.crystallised, whole.node, s.heat.crystallised);
   return whole;
-}
-
-WholeBlank whole_of(const BlankState& piece, const BlankSpec& blank) {
-  return whole_of(piece, blank.symmetry, std::abs(std::cos(blank.orientation)) > 0.5);
 }
 
 }  // namespace heddle::macroscale

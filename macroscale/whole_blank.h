@@ -13,8 +13,7 @@ struct WholeBlank {
   std::vector<int> node;  ///< of the piece, behind each node
 };
 
-/// @param warp_along_x  whether the warp runs along x; else along y
-WholeBlank whole_of(const BlankState& piece, Symmetry symmetry, bool warp_along_x);
-WholeBlank whole_of(const BlankState& piece, const BlankSpec& blank);
+/// Of a blank that is whole, itself.
+WholeBlank whole_of(const BlankState& piece);
 
 }  // namespace heddle::macroscale

@@ -21,10 +21,9 @@ constexpr int frames = 20;  // of the blank, over the stroke
 class StampingFiles {
  public:
   StampingFiles(RunFolder& folder, const Cache& cache, const StampingStageOptions& options,
-                const macroscale::BlankSpec& blank, const mesoscale::FabricProperties& fabric, int steps)
+                const mesoscale::FabricProperties& fabric, int steps)
       : folder_(folder),
         cache_(cache),
-        blank_(blank),
         fabric_(fabric),
         interval_(options.checkpoint_interval),
         every_(std::max(1, steps / frames)),
@@ -66,10 +65,10 @@ class StampingFiles {
   void add_frame(int step, macroscale::BlankState blank) {
     folder_.write("macroscale/history.csv", history_csv(history_));
     const std::string name = fmt::format("blank_{:04d}.vtu", step);
-    const bool all = blank_.symmetry == macroscale::Symmetry::none;
+    const bool all = blank.symmetry == macroscale::Symmetry::none;
     folder_.write("macroscale/" + name,
                   vtu(all ? mesh_with_indicators(blank, fabric_)
-                          : mesh_with_indicators(macroscale::whole_of(blank, blank_).state, fabric_)));
+                          : mesh_with_indicators(macroscale::whole_of(blank).state, fabric_)));
     series_.push_back({blank.time, name});
     folder_.write("macroscale/blank.pvd", pvd(series_));
     record_.frames.push_back({step, std::move(blank)});
@@ -77,7 +76,6 @@ class StampingFiles {
 
   RunFolder& folder_;
   const Cache& cache_;
-  const macroscale::BlankSpec& blank_;
   const mesoscale::FabricProperties& fabric_;
   double interval_;
   int every_;
@@ -116,7 +114,7 @@ macroscale::StampingResult run_stamping_stage(const macroscale::StampingSpec& sp
   const int steps = macroscale::all_steps(spec.process);
   // Files show the load of the tows that were stamped.
   const mesoscale::FabricProperties acting = macroscale::with_effects(fabric, spec.effects);
-  StampingFiles files(folder, cache, options, spec.blank, acting, steps);
+  StampingFiles files(folder, cache, options, acting, steps);
   std::optional<StampingRecord> from;
   const auto work = [&](bool& reused) {
     from = cache.find(options.inputs.key(), read_stamping_record);

@@ -10,6 +10,7 @@
 #include "core/csv.h"
 #include "core/hdf5_file.h"
 #include "core/units.h"
+#include "macroscale/whole_blank.h"
 #include "pipeline/painter.h"
 #include "pipeline/run_folder.h"
 #include "pipeline/stage_keys.h"
@@ -156,7 +157,7 @@ void take(StudiedStamping& stamping, const CaseRecord& record, const fs::path& f
   const std::string bytes = read_file(checkpoint);
   const StampingRecord kept = read_stamping_record(Hdf5Reader(bytes));
   if (!kept.frames.empty()) {
-    const macroscale::BlankState& blank = kept.frames.back().blank;
+    const macroscale::BlankState blank = macroscale::whole_of(kept.frames.back().blank).state;
     if (blank.punch_displacement > 0.0) stamping.shear = shear_place(blank, blank.punch_displacement);
   }
 }

@@ -79,7 +79,7 @@ FormedPart read_formed_part(const fs::path& folder, const Case& a_case) {
          folder.string()});
   const std::optional<StampingRecord> record = record_in(folder, problems);
   if (!problems.empty()) throw InputError(std::move(problems));
-  return {macroscale::whole_of(record->at.blank, a_case.stamping->blank).state,
+  return {macroscale::whole_of(record->at.blank).state,
           read_sheared_json(read_file(stiffness), stiffness.string()),
           mesoscale::fabric_geometry(*a_case.cell).mass.areal_density};
 }

@@ -4,6 +4,7 @@
 #include <filesystem>
 #include <fstream>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "core/problem.h"
@@ -77,6 +78,21 @@ TEST_CASE("the part goes out of the folder of a stamping, as a deck, a table of 
   REQUIRE(pipeline::export_case(export_of(scratch / "a", "abaqus")) == pipeline::exit_done);
   CHECK(fs::exists(to / "part_abaqus.inp"));
   CHECK(fs::exists(to / "heddle_friction.f"));
+}
+
+TEST_CASE("of a quarter the whole part goes out", "[pipeline][export][run]") {
+  const Scratch scratch;
+  const auto lines_of = [&](const char* name, std::vector<std::string> settings) {
+    stamp(scratch, name, with(std::move(settings), coarse_solid));
+    REQUIRE(pipeline::export_case(export_of(scratch / name, "ccx")) == pipeline::exit_done);
+    const std::string cells = pipeline::read_file(scratch / name / "export/part_stiffness.csv"),
+                      deck = pipeline::read_file(scratch / name / "export/part_ccx.inp");
+    return std::pair{std::count(cells.begin(), cells.end(), '\n'),
+                     std::count(deck.begin(), deck.end(), '\n')};
+  };
+  const auto whole = lines_of("whole", small_case());
+  CHECK(whole.first == 101);
+  CHECK(lines_of("quarter", with(small_case(), "blank.symmetry=quarter")) == whole);
 }
 
 TEST_CASE("a part that cannot go out is refused with what is missing and the command that makes it",
