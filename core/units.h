@@ -1,9 +1,13 @@
 #pragma once
 
+#include <numbers>
 #include <string>
 #include <string_view>
 
 namespace heddle {
+
+inline constexpr double degrees = 180.0 / std::numbers::pi;  ///< in a radian
+inline constexpr double zero_celsius = 273.15;               ///< [K]
 
 /// Exponents of the base quantities in a unit. Angles and amounts count, so that a plain number is not taken
 /// for either.

@@ -12,6 +12,7 @@
 
 #include "core/csv.h"
 #include "core/text_file.h"
+#include "core/units.h"
 
 namespace heddle::friction {
 
@@ -27,8 +28,9 @@ const std::map<std::string, Factor>& factors() {
   static const std::map<std::string, Factor> all = {
       {"velocity", {"mm/s", &TestDesign::velocity, [](double v) { return 1e-3 * v; }}},
       {"normal_force", {"N", &TestDesign::normal_force, [](double v) { return v; }}},
-      {"tool_temperature", {"C", &TestDesign::tool_temperature, [](double v) { return v + 273.15; }}},
-      {"fabric_temperature", {"C", &TestDesign::fabric_temperature, [](double v) { return v + 273.15; }}},
+      {"tool_temperature", {"C", &TestDesign::tool_temperature, [](double v) { return v + zero_celsius; }}},
+      {"fabric_temperature",
+       {"C", &TestDesign::fabric_temperature, [](double v) { return v + zero_celsius; }}},
       {"orientation",
        {"deg", &TestDesign::orientation, [](double v) { return v * std::numbers::pi / 180.0; }}}};
   return all;
@@ -137,9 +139,9 @@ std::vector<FrictionTestRow> one_at_a_time(const TestDesign& design) {
   vary(design.normal_force, &FrictionTestRow::normal_force,
        [](double v) { return fmt::format("normal force {:.4g} N", v); });
   vary(design.tool_temperature, &FrictionTestRow::tool_temperature,
-       [](double v) { return fmt::format("tool {:.4g} degC", v - 273.15); });
+       [](double v) { return fmt::format("tool {:.4g} degC", v - zero_celsius); });
   vary(design.fabric_temperature, &FrictionTestRow::fabric_temperature,
-       [](double v) { return fmt::format("fabric {:.4g} degC", v - 273.15); });
+       [](double v) { return fmt::format("fabric {:.4g} degC", v - zero_celsius); });
   vary(design.orientation, &FrictionTestRow::orientation,
        [](double v) { return fmt::format("orientation {:.4g} deg", v * 180.0 / std::numbers::pi); });
   return rows;

@@ -11,6 +11,11 @@
 
 namespace heddle::macroscale {
 
+/// Place (or movement) of node i in a vector of three unknowns a node.
+inline Eigen::Vector3d node_of(const Eigen::VectorXd& x, int i) {
+  return x.segment<3>(3 * i);
+}
+
 /// Three nodes of a quad's corner: the corner itself and its neighbours along warp and weft.
 struct Corner {
   int node;

@@ -17,9 +17,9 @@ namespace {
 
 using Eigen::Vector3d;
 
-struct Box {
+struct Bounds {
   Vector3d low, high;
-  bool meets(const Box& other) const {
+  bool meets(const Bounds& other) const {
     return (low.array() <= other.high.array()).all() && (other.low.array() <= high.array()).all();
   }
 };
@@ -48,7 +48,7 @@ class Sheet {
   double spacing() const { return std::max(spacing_[0], spacing_[1]); }
   const Vector3d& at(int n) const { return at_[static_cast<std::size_t>(n)]; }
   const std::array<int, 2>& grid(int n) const { return blank_.grid[static_cast<std::size_t>(n)]; }
-  const Box& box(int cell) const { return cell_[static_cast<std::size_t>(cell)].box; }
+  const Bounds& box(int cell) const { return cell_[static_cast<std::size_t>(cell)].box; }
 
   int node(int i, int j) const {
     if (i < 0 || j < 0 || i > blank_.nu || j > blank_.nv) return -1;
@@ -94,7 +94,7 @@ class Sheet {
   }
 
   struct Cell {
-    Box box;
+    Bounds box;
     std::array<int, 2> grid;  ///< of its first node
   };
   const BlankState& blank_;
@@ -130,7 +130,7 @@ class BoxGrid {
 
   /// Cells near a box; one may come more than once.
   template <class Visit>
-  void each_near(const Box& around, const Visit& visit) const {
+  void each_near(const Bounds& around, const Visit& visit) const {
     each_box(around, [&](std::size_t box) {
       for (int k = first_[box]; k < first_[box + 1]; ++k) visit(cell_[static_cast<std::size_t>(k)]);
     });
@@ -138,7 +138,7 @@ class BoxGrid {
 
  private:
   template <class Visit>
-  void each_box(const Box& box, const Visit& visit) const {
+  void each_box(const Bounds& box, const Visit& visit) const {
     std::array<int, 3> from, to;
     for (int c = 0; c < 3; ++c) {
       from[c] = std::clamp(static_cast<int>((box.low[c] - low_[c]) * inverse_side_), 0, count_[c] - 1);
@@ -204,7 +204,7 @@ std::vector<double> distances(const Sheet& sheet, const BoxGrid& boxes, double r
   std::vector<double> nearest(static_cast<std::size_t>(sheet.nodes()), reach);
   for (int n = 0; n < sheet.nodes(); ++n) {
     const Vector3d &p = sheet.at(n), span = Vector3d::Constant(reach);
-    const Box around{p - span, p + span};
+    const Bounds around{p - span, p + span};
     double& best = nearest[static_cast<std::size_t>(n)];
     boxes.each_near(around, [&](int cell) {
       if (sheet.flat_distance2(n, cell) < neighbour * neighbour || !sheet.box(cell).meets(around)) return;
@@ -218,7 +218,7 @@ std::vector<double> distances(const Sheet& sheet, const BoxGrid& boxes, double r
 // Whether the segment from node n to node m passes through a cell that shares no node with it.
 bool crosses_sheet(const Sheet& sheet, const BoxGrid& boxes, int n, int m) {
   const Vector3d &p = sheet.at(n), &q = sheet.at(m);
-  const Box around{p.cwiseMin(q), p.cwiseMax(q)};
+  const Bounds around{p.cwiseMin(q), p.cwiseMax(q)};
   bool crosses = false;
   boxes.each_near(around, [&](int cell) {
     if (crosses || !sheet.box(cell).meets(around)) return;

@@ -9,6 +9,7 @@
 #include <utility>
 #include <vector>
 
+#include "macroscale/findings.h"
 #include "macroscale/mesh_predicates.h"
 #include "macroscale/mesh_repair.h"
 #include "macroscale/mesh_topology.h"
@@ -37,20 +38,6 @@ std::vector<int> first_at_same_place(const std::vector<Place>& vertices) {
   }
   return first;
 }
-
-class Findings {
- public:
-  Findings(std::string key, std::string file) : key_(std::move(key)), file_(std::move(file)) {}
-  void add(RuleFamily id, std::string rule, std::string way_out) {
-    problems_.push_back({id.of(key_), key_ + ".file", "", std::move(rule), std::move(way_out), file_});
-  }
-  bool any() const { return !problems_.empty(); }
-  Problems take() { return std::move(problems_); }
-
- private:
-  std::string key_, file_;
-  Problems problems_;
-};
 
 /// Numbers first: nothing else can be asked of a mesh that fails here.
 void examine_numbers(const TriangleMesh& mesh, Findings& f) {
@@ -182,7 +169,7 @@ void examine_sides(const TriangleMesh& mesh, const std::vector<EdgeUse>& uses, F
 
 Problems faults(const TriangleMesh& mesh, const std::string& key, const std::string& file,
                 TopologyRule rule) {
-  Findings f(key, file);
+  Findings f(key, key + ".file", file);
   examine_numbers(mesh, f);
   if (f.any()) return f.take();
   examine_triangles(mesh, f);

@@ -21,7 +21,7 @@ using Surface = CGAL::Surface_mesh<Kernel::Point_3>;
 using Tree = CGAL::AABB_tree<CGAL::AABB_traits<Kernel, CGAL::AABB_face_graph_triangle_primitive<Surface>>>;
 using Side = CGAL::Side_of_triangle_mesh<Surface, Kernel>;
 
-Surface surface_of(const TriangleMesh& mesh) {
+Surface closed_surface(const TriangleMesh& mesh) {
   if (Problems problems = check(mesh, "mesh", "", TopologyRule::closed); !problems.empty())
     throw InputError(std::move(problems));
   Surface surface;
@@ -43,7 +43,9 @@ struct MeshDistance::Trees {
   Side side;
 
   explicit Trees(const TriangleMesh& mesh)
-      : surface(surface_of(mesh)), tree(faces(surface).first, faces(surface).second, surface), side(tree) {
+      : surface(closed_surface(mesh)),
+        tree(faces(surface).first, faces(surface).second, surface),
+        side(tree) {
     // Both at once, so that no query builds anything: queries then only read.
     tree.build();
     tree.accelerate_distance_queries();

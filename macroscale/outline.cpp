@@ -17,6 +17,8 @@
 #include <CGAL/intersections.h>
 #include <fmt/format.h>
 
+#include "macroscale/findings.h"
+
 namespace heddle::macroscale {
 namespace {
 
@@ -56,20 +58,6 @@ struct Edge {
 std::string name_of(int ring) {
   return ring == 0 ? "the outer border" : fmt::format("hole {}", ring);
 }
-
-class Findings {
- public:
-  explicit Findings(std::string key) : key_(std::move(key)) {}
-  void add(RuleFamily id, std::string rule, std::string way_out) {
-    problems_.push_back({id.of(key_), key_, "", std::move(rule), std::move(way_out)});
-  }
-  bool any() const { return !problems_.empty(); }
-  Problems take() { return std::move(problems_); }
-
- private:
-  std::string key_;
-  Problems problems_;
-};
 
 void examine_points(const Ring& ring, int number, Findings& f) {
   if (ring.size() < 3) {
@@ -248,7 +236,7 @@ void clip_all(Pieces& pieces, const Side& side) {
   std::erase_if(pieces, [](const Piece& piece) { return piece.ring.size() < 3; });
 }
 
-struct Box {
+struct Rectangle {
   std::array<double, 2> low{INFINITY, INFINITY}, high{-INFINITY, -INFINITY};
   void add(const Point2& p) {
     for (int c = 0; c < 2; ++c) {
@@ -258,7 +246,7 @@ struct Box {
   }
 };
 
-void clip_to_box(Pieces& pieces, const Box& box) {
+void clip_to_box(Pieces& pieces, const Rectangle& box) {
   const Exact x0 = box.low[0], x1 = box.high[0], y0 = box.low[1], y1 = box.high[1];
   clip_all(pieces, [&](const ExactPoint& p) { return Exact(p.x - x0); });
   clip_all(pieces, [&](const ExactPoint& p) { return Exact(x1 - p.x); });
@@ -298,7 +286,7 @@ class Clipper {
 
   /// Fills in the areas of cells[first..last) of `order`.
   void divide(Pieces pieces, std::vector<int>::iterator first, std::vector<int>::iterator last) {
-    Box box;
+    Rectangle box;
     for (auto it = first; it != last; ++it) {
       for (const Point2& p : cells_[*it]) box.add(p);
     }
@@ -404,7 +392,7 @@ Outline polygon(Ring outer, std::vector<Ring> holes) {
 }
 
 Problems check(const Outline& outline, const std::string& key) {
-  Findings f(key);
+  Findings f(key, key, "");
   std::vector<const Ring*> rings{&outline.outer};
   for (const Ring& hole : outline.holes) rings.push_back(&hole);
   std::size_t points = 0;

@@ -34,9 +34,9 @@ struct Chain {
   int line = 0;
 };
 
-class Source {
+class OutlineSource {
  public:
-  Source(const OutlineFile& outline, const std::string& key) : outline_(outline), key_(key) {}
+  OutlineSource(const OutlineFile& outline, const std::string& key) : outline_(outline), key_(key) {}
   [[noreturn]] void refuse(RuleFamily id, int line, std::string rule, std::string way_out) const {
     throw InputError({{id.of(key_), key_ + ".file", "", std::move(rule), std::move(way_out),
                        outline_.file.string(), line}});
@@ -70,7 +70,7 @@ std::optional<Number> parse(std::string_view text) {
   return error == std::errc{} && end == text.data() + text.size() ? std::optional(value) : std::nullopt;
 }
 
-std::vector<Group> read_groups(const Source& source) {
+std::vector<Group> read_groups(const OutlineSource& source) {
   std::ifstream stream(source.outline().file);
   std::vector<Group> groups;
   int line = 0;
@@ -114,7 +114,7 @@ struct Entity {
 
 class Drawing {
  public:
-  explicit Drawing(const Source& source) : source_(source) {
+  explicit Drawing(const OutlineSource& source) : source_(source) {
     std::string section;
     std::vector<Group> groups = read_groups(source);
     for (std::size_t i = 0; i < groups.size(); ++i) {
@@ -163,7 +163,7 @@ class Drawing {
   }
 
  private:
-  const Source& source_;
+  const OutlineSource& source_;
   std::string variable_;
   std::optional<Group> units_;
   std::vector<Entity> entities_;
@@ -172,7 +172,7 @@ class Drawing {
 /// Turns entities into chains, in metres.
 class Tracer {
  public:
-  explicit Tracer(const Source& source) : source_(source) {}
+  explicit Tracer(const OutlineSource& source) : source_(source) {}
 
   std::vector<Chain> trace(const std::vector<Entity>& entities) {
     for (std::size_t i = 0; i < entities.size(); ++i) {
@@ -353,7 +353,7 @@ class Tracer {
     chains_.push_back({std::move(points), e.line});
   }
 
-  const Source& source_;
+  const OutlineSource& source_;
   std::vector<Chain> chains_;
 };
 
@@ -379,7 +379,7 @@ double extent(const std::vector<Chain>& chains) {
 }
 
 /// Chains joined end to end into rings; the first chain of a ring gives its line.
-std::vector<Ring> join(std::vector<Chain> chains, const Source& source) {
+std::vector<Ring> join(std::vector<Chain> chains, const OutlineSource& source) {
   const double tolerance = 1e-6 * extent(chains);
   std::vector<char> used(chains.size(), 0);
   std::vector<Ring> rings;
@@ -439,7 +439,7 @@ Outline sorted_rings(std::vector<Ring> rings) {
   return polygon(std::move(outer), std::move(rings));
 }
 
-std::vector<Chain> dxf_chains(const Source& source) {
+std::vector<Chain> dxf_chains(const OutlineSource& source) {
   if (std::filesystem::file_size(source.outline().file) > largest_drawing)
     source.refuse("*.file.size"_family, 0, fmt::format("must have at most {} MB", largest_drawing >> 20),
                   "Export the blank's border alone.");
@@ -448,7 +448,7 @@ std::vector<Chain> dxf_chains(const Source& source) {
   return Tracer(source).trace(drawing.entities());
 }
 
-std::vector<Chain> step_chains(const Source& source) {
+std::vector<Chain> step_chains(const OutlineSource& source) {
   const OutlineFile& outline = source.outline();
   require_step(outline.file, outline.length_unit, source.key());
   std::vector<Chain> chains;
@@ -464,7 +464,7 @@ std::vector<Chain> step_chains(const Source& source) {
 }  // namespace
 
 Outline read_outline(const OutlineFile& outline, const std::string& key) {
-  const Source source(outline, key);
+  const OutlineSource source(outline, key);
   const auto demand = [&](bool holds, const char* name, double value, const char* way_out) {
     const std::string of = key + "." + name;
     if (!holds)

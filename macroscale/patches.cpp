@@ -8,17 +8,9 @@
 
 namespace heddle::macroscale {
 
-namespace {
-
 using Eigen::Matrix3d;
 using Eigen::Vector3d;
 using Eigen::VectorXd;
-
-Vector3d node_of(const VectorXd& x, int i) {
-  return x.segment<3>(3 * i);
-}
-
-}  // namespace
 
 Bilinear bilinear(double u, double v) {
   return {{(1 - u) * (1 - v), u * (1 - v), u * v, (1 - u) * v}, {v - 1, 1 - v, v, -v}, {u - 1, -u, u, 1 - u}};

@@ -21,10 +21,6 @@ constexpr double beyond_edge = 0.5;  ///< how far off the edge a point still mee
 constexpr double edge_on = 0.5;      ///< cosine below which faces are no faces to each other
 constexpr double margin = 0.5;       ///< that a pair may move before the pattern is made anew [cells]
 
-Vector3d node_of(const VectorXd& x, int i) {
-  return x.segment<3>(3 * i);
-}
-
 // What of a patch a place in it needs.
 struct Patch {
   Vector3d place, normal, along_u, along_v;

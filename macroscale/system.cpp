@@ -2,12 +2,8 @@
 
 #include <algorithm>
 #include <cmath>
-#include <functional>
 
-#include <tbb/blocked_range.h>
-#include <tbb/parallel_for.h>
-#include <tbb/parallel_reduce.h>
-
+#include "macroscale/parallel.h"
 #include "macroscale/self_contact.h"
 #include "macroscale/tool_drive.h"
 
@@ -22,29 +18,6 @@ using Eigen::VectorXd;
 // Resistance to twist of the sheet, as a share of the mean bending stiffness. Tow bending alone leaves the
 // saddle w = x y without energy; the share is small, and reports print how much energy it took.
 constexpr double twist_share = 0.1;
-
-// Fixed pieces and a fixed order of summation: the same bytes on one thread or many.
-template <class Term>
-double ordered_sum(int n, const Term& term) {
-  return tbb::parallel_deterministic_reduce(
-      tbb::blocked_range<int>(0, n, 512), 0.0,
-      [&](const tbb::blocked_range<int>& range, double sum) {
-        for (int i = range.begin(); i != range.end(); ++i) sum += term(i);
-        return sum;
-      },
-      std::plus<>());
-}
-
-template <class Body>
-void for_each(int n, const Body& body) {
-  tbb::parallel_for(tbb::blocked_range<int>(0, n, 256), [&](const tbb::blocked_range<int>& range) {
-    for (int i = range.begin(); i != range.end(); ++i) body(i);
-  });
-}
-
-Vector3d node_of(const VectorXd& x, int i) {
-  return x.segment<3>(3 * i);
-}
 
 Vector3d second_difference(const VectorXd& x, const TowTriple& t) {
   return node_of(x, t.before) - 2.0 * node_of(x, t.middle) + node_of(x, t.after);

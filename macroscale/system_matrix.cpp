@@ -3,9 +3,7 @@
 #include <array>
 #include <set>
 
-#include <tbb/blocked_range.h>
-#include <tbb/parallel_for.h>
-
+#include "macroscale/parallel.h"
 #include "macroscale/system.h"
 #include "macroscale/tool_drive.h"
 
@@ -14,13 +12,6 @@ namespace heddle::macroscale {
 namespace {
 
 using Eigen::Matrix3d;
-
-template <class Body>
-void for_each(int n, const Body& body) {
-  tbb::parallel_for(tbb::blocked_range<int>(0, n, 256), [&](const tbb::blocked_range<int>& range) {
-    for (int i = range.begin(); i != range.end(); ++i) body(i);
-  });
-}
 
 }  // namespace
 

@@ -362,14 +362,14 @@ TriangleMesh read_obj(const Source& source) {
   return collector.take();
 }
 
-struct Box {
+struct Extent {
   Place low, high;
   double extent(int c) const { return high[c] - low[c]; }
   double largest() const { return std::max({extent(0), extent(1), extent(2)}); }
 };
 
-Box box_of(const TriangleMesh& mesh) {
-  Box box{mesh.vertices.front(), mesh.vertices.front()};
+Extent box_of(const TriangleMesh& mesh) {
+  Extent box{mesh.vertices.front(), mesh.vertices.front()};
   for (const Place& p : mesh.vertices) {
     for (int c = 0; c < 3; ++c) {
       box.low[c] = std::min(box.low[c], p[c]);
@@ -379,7 +379,7 @@ Box box_of(const TriangleMesh& mesh) {
   return box;
 }
 
-std::string extents(const Box& box, double factor) {
+std::string extents(const Extent& box, double factor) {
   return fmt::format("{:.4g} x {:.4g} x {:.4g} mm", 1e3 * factor * box.extent(0),
                      1e3 * factor * box.extent(1), 1e3 * factor * box.extent(2));
 }
@@ -387,7 +387,7 @@ std::string extents(const Box& box, double factor) {
 /// A unit slip is a factor 1000, 25.4 or 10; real tools lie well inside this window.
 constexpr double most_blanks = 20.0, least_blanks = 1.0 / 50.0;
 
-void require_size(const Box& box, const ToolFile& tool, const Expectation& expected) {
+void require_size(const Extent& box, const ToolFile& tool, const Expectation& expected) {
   const double needed = std::max({expected.blank_size[0], expected.blank_size[1], expected.stroke});
   if (!(needed > 0.0)) return;
   const auto fits = [&](double extent) {

@@ -4,7 +4,6 @@
 
 #include <cmath>
 #include <nlohmann/json.hpp>
-#include <numbers>
 
 #include "core/units.h"
 #include "pipeline/json_text.h"
@@ -15,9 +14,6 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 using friction::FittedNumber;
-
-constexpr double degrees = 180.0 / std::numbers::pi;
-constexpr double zero_celsius = 273.15;  // [K]
 
 /// Quoted where the separator makes it necessary (RFC 4180).
 std::string csv_text(const std::string& text) {

@@ -304,7 +304,7 @@ std::string residual_figures(const CalibrationFindings& findings) {
               chart({"normal force", "N", Scale::logarithmic},
                     [&](std::size_t i) { return rows[i].pull.normal_force; })) +
          pair(chart({"tool temperature", "°C"},
-                    [&](std::size_t i) { return rows[i].pull.tool_temperature - 273.15; }),
+                    [&](std::size_t i) { return rows[i].pull.tool_temperature - zero_celsius; }),
               hersey_figure(findings));
 }
 

@@ -2,10 +2,10 @@
 
 #include <cmath>
 #include <iostream>
-#include <numbers>
 
 #include <fmt/format.h>
 
+#include "core/units.h"
 #include "macroscale/advice.h"
 #include "macroscale/punch_profile.h"
 #include "pipeline/cache.h"
@@ -35,8 +35,6 @@ namespace heddle::pipeline {
 namespace {
 
 namespace fs = std::filesystem;
-
-constexpr double degrees = 180.0 / std::numbers::pi;
 
 std::vector<double> contact_pressures() {
   std::vector<double> p;

@@ -22,10 +22,6 @@
 namespace heddle::pipeline {
 namespace {
 
-constexpr auto required = Presence::required;
-constexpr auto defaulted = Presence::defaulted;
-constexpr auto optional = Presence::optional;
-
 // A table reads better in rows than one field a line.
 // clang-format off
 std::vector<Key> head_keys() {

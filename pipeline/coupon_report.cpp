@@ -2,10 +2,10 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 
 #include <fmt/format.h>
 
+#include "core/units.h"
 #include "pipeline/chart.h"
 #include "pipeline/outputs.h"
 #include "pipeline/page.h"
@@ -19,7 +19,6 @@ using mesoscale::CouponPoint;
 using mesoscale::CouponPull;
 using mesoscale::FabricProperties;
 
-constexpr double degrees = 180.0 / std::numbers::pi;
 constexpr std::array<double, 3> speeds{0.0, 1e-3, 10e-3};  // [m/s]; 0: without the rate's part
 
 CouponPull pull_of(const FabricProperties& fabric, double speed) {

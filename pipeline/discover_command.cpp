@@ -241,8 +241,8 @@ void print_next(const discover::Proposal& proposal) {
   for (const discover::ProposedPull& next : proposal.pulls)
     fmt::print("  {:g} mm/s, {:g} N, tool {:g} degC, fabric {:g} degC, {:g} deg, rest {:g} s\n",
                rounded(1e3 * next.cell.pull.velocity), rounded(next.cell.pull.normal_force),
-               rounded(next.cell.pull.tool_temperature - 273.15),
-               rounded(next.cell.pull.fabric_temperature - 273.15),
+               rounded(next.cell.pull.tool_temperature - zero_celsius),
+               rounded(next.cell.pull.fabric_temperature - zero_celsius),
                rounded(next.cell.pull.orientation * 180.0 / std::numbers::pi), next.cell.dwell);
   for (const auto& [i, j] : proposal.inseparable)
     fmt::print("  no three conditions within the campaign's levels tell {} and {} apart\n",

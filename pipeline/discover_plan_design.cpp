@@ -160,10 +160,11 @@ std::string design_csv(const std::vector<CouponCell>& cells) {
       "condition_id,day_id,velocity_mm_s,normal_force_N,tool_temperature_C,fabric_temperature_C,"
       "orientation_deg,dwell_s,replicates\n";
   for (const CouponCell& cell : cells)
-    text += fmt::format("c{:02},d{:02},{:.6g},{:.6g},{:.6g},{:.6g},{:.6g},{:.6g},{}\n", cell.condition + 1,
-                        cell.day + 1, 1e3 * cell.pull.velocity, cell.pull.normal_force,
-                        cell.pull.tool_temperature - 273.15, cell.pull.fabric_temperature - 273.15,
-                        cell.pull.orientation * 180.0 / std::numbers::pi, cell.dwell, cell.samples);
+    text +=
+        fmt::format("c{:02},d{:02},{:.6g},{:.6g},{:.6g},{:.6g},{:.6g},{:.6g},{}\n", cell.condition + 1,
+                    cell.day + 1, 1e3 * cell.pull.velocity, cell.pull.normal_force,
+                    cell.pull.tool_temperature - zero_celsius, cell.pull.fabric_temperature - zero_celsius,
+                    cell.pull.orientation * 180.0 / std::numbers::pi, cell.dwell, cell.samples);
   return text;
 }
 

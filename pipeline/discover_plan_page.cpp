@@ -61,8 +61,8 @@ std::string cells_table(const std::vector<discover::CouponCell>& cells) {
   for (const discover::CouponCell& cell : cells)
     rows.push_back({fmt::format("c{:02}", cell.condition + 1), fmt::format("d{:02}", cell.day + 1),
                     significant(1e3 * cell.pull.velocity, 3), significant(cell.pull.normal_force, 4),
-                    significant(cell.pull.tool_temperature - 273.15, 3),
-                    significant(cell.pull.fabric_temperature - 273.15, 3),
+                    significant(cell.pull.tool_temperature - zero_celsius, 3),
+                    significant(cell.pull.fabric_temperature - zero_celsius, 3),
                     significant(cell.pull.orientation * 57.29577951308232, 3), significant(cell.dwell, 3),
                     std::to_string(cell.samples)});
   return table({"condition", "day", "speed, mm/s", "load, N", "tool, °C", "fabric, °C", "angle, °", "rest, s",

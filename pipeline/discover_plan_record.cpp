@@ -42,8 +42,8 @@ std::string setting(double value) {
 std::vector<std::pair<std::string, std::string>> settings_of(const discover::CouponCell& cell) {
   return {{"velocity_mm_s", setting(1e3 * cell.pull.velocity)},
           {"normal_force_N", setting(cell.pull.normal_force)},
-          {"tool_temperature_C", setting(cell.pull.tool_temperature - 273.15)},
-          {"fabric_temperature_C", setting(cell.pull.fabric_temperature - 273.15)},
+          {"tool_temperature_C", setting(cell.pull.tool_temperature - zero_celsius)},
+          {"fabric_temperature_C", setting(cell.pull.fabric_temperature - zero_celsius)},
           {"orientation_deg", setting(cell.pull.orientation * 180.0 / std::numbers::pi)},
           {"dwell_s", setting(cell.dwell)}};
 }

@@ -131,8 +131,8 @@ ordered_json shape_json(const std::vector<discover::Shape>& shapes) {
 
 std::string condition_cells(const discover::CouponCell& cell) {
   return fmt::format("{},{:.6g},{:.6g},{:.6g},{:.6g},{:.6g},{:.6g}", cell.pull.name, 1e3 * cell.pull.velocity,
-                     cell.pull.normal_force, cell.pull.tool_temperature - 273.15,
-                     cell.pull.fabric_temperature - 273.15, cell.pull.orientation * 57.29577951308232,
+                     cell.pull.normal_force, cell.pull.tool_temperature - zero_celsius,
+                     cell.pull.fabric_temperature - zero_celsius, cell.pull.orientation * degrees,
                      cell.dwell);
 }
 

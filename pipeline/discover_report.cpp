@@ -7,6 +7,7 @@
 #include <numbers>
 #include <set>
 
+#include "core/units.h"
 #include "pipeline/discover_report_parts.h"
 #include "pipeline/page.h"
 
@@ -164,9 +165,9 @@ std::string condition_words(const DiscoveryPage& page, const discover::CouponCel
   };
   std::string text = fmt::format("{} mm/s, {} N, tool {} °C", plain_number(1e3 * cell.pull.velocity, 3),
                                  plain_number(cell.pull.normal_force, 3),
-                                 plain_number(cell.pull.tool_temperature - 273.15, 4));
+                                 plain_number(cell.pull.tool_temperature - zero_celsius, 4));
   if (varies("fabric temperature"))
-    text += fmt::format(", fabric {} °C", plain_number(cell.pull.fabric_temperature - 273.15, 4));
+    text += fmt::format(", fabric {} °C", plain_number(cell.pull.fabric_temperature - zero_celsius, 4));
   if (varies("orientation"))
     text += fmt::format(", {}°", plain_number(cell.pull.orientation * 180.0 / std::numbers::pi, 3));
   if (varies("dwell")) text += fmt::format(", dwell {} s", plain_number(cell.dwell, 3));

@@ -10,6 +10,7 @@
 #include <limits>
 #include <numbers>
 
+#include "core/units.h"
 #include "pipeline/outputs.h"
 #include "pipeline/painter.h"
 #include "pipeline/voxel_export.h"
@@ -268,7 +269,7 @@ QuadMesh mesh_of(const macroscale::BlankState& blank) {
     add({"pressure_between_plies_Pa", 1, blank.ply_pressure});
   }
   const auto add_celsius = [&](const char* name, std::vector<double> kelvin) {
-    for (double& value : kelvin) value -= 273.15;
+    for (double& value : kelvin) value -= zero_celsius;
     add({name, 1, std::move(kelvin)});
   };
   add_celsius("temperature_bottom_C", blank.heat.bottom);

@@ -6,6 +6,7 @@
 
 #include <fmt/format.h>
 
+#include "core/units.h"
 #include "macroscale/advice.h"
 #include "pipeline/indicator_outputs.h"
 #include "pipeline/shear_loop.h"
@@ -14,8 +15,6 @@
 namespace heddle::pipeline {
 
 namespace {
-
-constexpr double degrees = 180.0 / std::numbers::pi;
 
 // What of a symmetric part was computed, as a sentence behind another; nothing for all of it.
 std::string piece_in_words(macroscale::Symmetry symmetry) {
@@ -46,8 +45,8 @@ std::vector<Condition> conditions_of(const Case& a_case) {
       s.binder.control == macroscale::BinderControl::gap
           ? Condition{"Binder", fmt::format("held at a gap of {:g} mm", 1e3 * s.binder.gap)}
           : Condition{"Binder force", fmt::format("{:g} N", s.process.binder_force)},
-      {"Tool temperature", fmt::format("{:g} degC", s.process.tool_temperature - 273.15)},
-      {"Blank temperature", fmt::format("{:g} degC", s.process.blank_temperature - 273.15)},
+      {"Tool temperature", fmt::format("{:g} degC", s.process.tool_temperature - zero_celsius)},
+      {"Blank temperature", fmt::format("{:g} degC", s.process.blank_temperature - zero_celsius)},
       {"Stroke",
        fmt::format("{:g} mm in {:g} s", 1e3 * s.process.stroke, s.process.time / s.process.speed_scale)},
       {"Blank", fmt::format("{}, warp at {:g} deg", blank_in_words(s.blank), degrees * s.blank.orientation)},

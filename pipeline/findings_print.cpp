@@ -1,16 +1,14 @@
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 
 #include <fmt/format.h>
 
+#include "core/units.h"
 #include "pipeline/findings.h"
 
 namespace heddle::pipeline {
 
 namespace {
-
-constexpr double degrees = 180.0 / std::numbers::pi;
 
 void print_cell(const mesoscale::CellSummary& s, const mesoscale::TowBodies& bodies) {
   fmt::print("areal density        {:.4f} kg/m^2\n", s.areal_density);

@@ -7,6 +7,7 @@
 #include <type_traits>
 
 #include "core/units.h"
+#include "pipeline/key_table.h"
 
 namespace heddle::pipeline {
 namespace {
@@ -74,10 +75,6 @@ template <class Law>
 bool is_chosen(const Settings& settings) {
   if (!friction::HerseyLaw<Law>) return settings.is("friction.law", About<Law>::id);
   return settings.is("friction.law", "stribeck") && settings.is("friction.form", About<Law>::id);
-}
-
-void append(std::vector<Key>& keys, std::vector<Key> more) {
-  keys.insert(keys.end(), std::make_move_iterator(more.begin()), std::make_move_iterator(more.end()));
 }
 
 std::vector<std::string> names(bool hersey) {

@@ -1,11 +1,11 @@
 #include "pipeline/indicator_outputs.h"
 
 #include <algorithm>
-#include <numbers>
 #include <stdexcept>
 
 #include <fmt/format.h>
 
+#include "core/units.h"
 #include "pipeline/outputs.h"
 #include "pipeline/painter.h"
 
@@ -15,7 +15,7 @@ namespace {
 
 using macroscale::LargestIndicator;
 
-DataArray pairs(std::string name, const std::vector<std::array<double, 2>>& values, double per_si) {
+DataArray pair_data(std::string name, const std::vector<std::array<double, 2>>& values, double per_si) {
   DataArray array{std::move(name), 2, {}};
   for (const auto& pair : values)
     for (const double value : pair) array.values.push_back(per_si * value);
@@ -35,16 +35,14 @@ std::string place(const LargestIndicator& indicator) {
   return place(indicator.at);
 }
 
-constexpr double degrees = 180.0 / std::numbers::pi;
-
 }  // namespace
 
 QuadMesh mesh_with_indicators(const macroscale::BlankState& blank,
                               const mesoscale::FabricProperties& fabric) {
   QuadMesh mesh = mesh_of(blank);
   const macroscale::Indicators of = macroscale::indicators(blank, fabric);
-  add_nodal(mesh, blank, pairs("tow_load_warp_weft", of.tow_load, 1.0));
-  add_nodal(mesh, blank, pairs("gap_opening_warp_weft_mm", of.gap_opening, 1e3));
+  add_nodal(mesh, blank, pair_data("tow_load_warp_weft", of.tow_load, 1.0));
+  add_nodal(mesh, blank, pair_data("gap_opening_warp_weft_mm", of.gap_opening, 1e3));
   DataArray height{"wrinkle_height_mm", 1, of.wrinkle_height};
   for (double& value : height.values) value *= 1e3;
   add_nodal(mesh, blank, std::move(height));

@@ -10,6 +10,10 @@
 /// What tables of keys are put together with.
 namespace heddle::pipeline {
 
+inline constexpr auto required = Presence::required;
+inline constexpr auto defaulted = Presence::defaulted;
+inline constexpr auto optional = Presence::optional;
+
 inline void append(std::vector<Key>& keys, std::vector<Key> more) {
   keys.insert(keys.end(), std::make_move_iterator(more.begin()), std::make_move_iterator(more.end()));
 }

@@ -26,14 +26,14 @@ Vector difference(const Vector& a, const Vector& b) {
 }
 
 /// Directions of the picture in the frame of the body: right, up, and towards the viewer.
-struct Frame {
+struct Directions {
   Vector right, up, viewer;
 };
 
-Frame frame_of(const Camera& camera) {
+Directions frame_of(const Camera& camera) {
   const double azimuth = camera.azimuth * std::numbers::pi / 180.0;
   const double elevation = camera.elevation * std::numbers::pi / 180.0;
-  Frame frame;
+  Directions frame;
   frame.right = {-std::sin(azimuth), std::cos(azimuth), 0.0};
   frame.viewer = {std::cos(elevation) * std::cos(azimuth), std::cos(elevation) * std::sin(azimuth),
                   std::sin(elevation)};
@@ -43,7 +43,7 @@ Frame frame_of(const Camera& camera) {
 
 /// Where a point of the body falls on the sheet, and how near to the viewer it is.
 struct View {
-  Frame frame;
+  Directions frame;
   bool turned_over;
   double zoom;  ///< [px/m]
   Point origin;

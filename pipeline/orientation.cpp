@@ -3,12 +3,12 @@
 #include <algorithm>
 #include <cmath>
 #include <iostream>
-#include <numbers>
 #include <numeric>
 
 #include <fmt/format.h>
 
 #include "core/progress.h"
+#include "core/units.h"
 #include "macroscale/punch_profile.h"
 #include "pipeline/cache.h"
 #include "pipeline/chart.h"
@@ -24,8 +24,6 @@
 namespace heddle::pipeline {
 
 namespace {
-
-constexpr double degrees = 180.0 / std::numbers::pi;
 
 std::string angle_text(double angle) {
   // Converted angles are whole degrees up to rounding.

@@ -5,14 +5,12 @@
 #include <bit>
 #include <cmath>
 #include <cstring>
-#include <numbers>
+
+#include "core/units.h"
 
 namespace heddle::pipeline {
 
 namespace {
-
-constexpr double degrees = 180.0 / std::numbers::pi;
-constexpr double zero_celsius = 273.15;  // [K]
 
 std::string finite(double value, std::string_view quantity, std::size_t row) {
   if (!std::isfinite(value))

@@ -2,9 +2,9 @@
 
 #include <cmath>
 #include <nlohmann/json.hpp>
-#include <numbers>
 #include <set>
 
+#include "core/units.h"
 #include "pipeline/json_text.h"
 #include "pipeline/outputs.h"
 
@@ -13,8 +13,6 @@ namespace heddle::pipeline {
 namespace {
 
 using Json = nlohmann::ordered_json;
-
-constexpr double degrees = 180.0 / std::numbers::pi;
 
 // ---- writing
 // -----------------------------------------------------------------------------------------------------
@@ -66,7 +64,6 @@ Json plies_json(const macroscale::StackSummary& stack) {
 }
 
 Json heat_json(const macroscale::HeatSummary& heat) {
-  constexpr double zero_celsius = 273.15;  // [K]
   Json out{{"temperature_mean_C", heat.last.mean_temperature - zero_celsius},
            {"face_temperature_min_C", heat.last.coldest_face - zero_celsius},
            {"crystallised_share", heat.last.crystallised},

@@ -4,8 +4,8 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 
+#include "core/units.h"
 #include "macroscale/ply_state.h"
 #include "pipeline/coupon_report.h"
 #include "pipeline/page.h"
@@ -18,8 +18,6 @@
 namespace heddle::pipeline {
 
 namespace {
-
-constexpr double degrees = 180.0 / std::numbers::pi;
 
 // ---- the top of the page
 // -----------------------------------------------------------------------------------------
@@ -198,8 +196,8 @@ std::string friction_table(const std::vector<FrictionTestRow>& rows) {
     out += fmt::format("<tr><td>{}</td>", escape(row.name));
     for (const std::string& cell :
          {significant(1e3 * row.velocity, 4), significant(row.normal_force, 4),
-          fmt::format("{:.0f}", row.tool_temperature - 273.15),
-          fmt::format("{:.0f}", row.fabric_temperature - 273.15),
+          fmt::format("{:.0f}", row.tool_temperature - zero_celsius),
+          fmt::format("{:.0f}", row.fabric_temperature - zero_celsius),
           fmt::format("{:.0f}", degrees * row.orientation), fmt::format("{:.3f}", row.friction_coefficient),
           significant(row.pull_force, 4), newtons(row.measured_force), signed_percent(error_of_model(row)),
           signed_percent(error_of_paper(row))}) {

@@ -4,16 +4,15 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 #include <stdexcept>
 
+#include "core/units.h"
 #include "pipeline/export_vtu.h"
 
 namespace heddle::pipeline {
 
 namespace {
 
-constexpr double degrees = 180.0 / std::numbers::pi;
 using macroscale::HistoryRow;
 using Rows = std::vector<HistoryRow>;
 
@@ -246,7 +245,7 @@ bool same_curve(const FrictionCurveRow& a, const FrictionCurveRow& b) {
 }
 
 std::string curve_name(const FrictionCurveRow& row) {
-  return fmt::format("{:.4g} kPa, {:.0f} °C", 1e-3 * row.pressure, row.tool_temperature - 273.15);
+  return fmt::format("{:.4g} kPa, {:.0f} °C", 1e-3 * row.pressure, row.tool_temperature - zero_celsius);
 }
 
 }  // namespace

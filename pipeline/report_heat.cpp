@@ -4,6 +4,7 @@
 
 #include <algorithm>
 
+#include "core/units.h"
 #include "pipeline/chart.h"
 #include "pipeline/page.h"
 #include "pipeline/report_figures.h"
@@ -11,8 +12,6 @@
 namespace heddle::pipeline {
 
 namespace {
-
-constexpr double zero_celsius = 273.15;  // [K]
 
 std::vector<double> in_celsius(std::vector<double> kelvin) {
   for (double& value : kelvin) value -= zero_celsius;

@@ -1,10 +1,10 @@
 #include "pipeline/report_plies.h"
 
 #include <algorithm>
-#include <numbers>
 
 #include <fmt/format.h>
 
+#include "core/units.h"
 #include "macroscale/ply_state.h"
 #include "pipeline/page.h"
 #include "pipeline/report_figures.h"
@@ -12,8 +12,6 @@
 namespace heddle::pipeline {
 
 namespace {
-
-constexpr double degrees = 180.0 / std::numbers::pi;
 
 std::string millimetres(double metres) {
   return significant(1e3 * metres, 3) + " mm";

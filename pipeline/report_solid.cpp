@@ -8,6 +8,7 @@
 
 #include <fmt/format.h>
 
+#include "core/units.h"
 #include "pipeline/report_figures.h"
 
 namespace heddle::pipeline {
@@ -105,8 +106,6 @@ Canvas stiffness_chart(const solid::SolidResult& s) {
 }
 
 namespace {
-
-constexpr double degrees = 180.0 / std::numbers::pi;
 
 // The rows by rising angle, whatever the order they were asked for in.
 std::vector<const solid::ShearedSolid*> by_angle(const std::vector<solid::ShearedSolid>& rows) {

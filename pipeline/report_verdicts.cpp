@@ -2,8 +2,8 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 
+#include "core/units.h"
 #include "pipeline/report.h"
 #include "pipeline/report_heat.h"
 #include "pipeline/report_solid.h"
@@ -11,8 +11,6 @@
 namespace heddle::pipeline {
 
 namespace {
-
-constexpr double degrees = 180.0 / std::numbers::pi;
 
 /// A share as the reader says it: "0.4 %"; what is too small to matter is not drawn out in digits.
 std::string percent(double share) {

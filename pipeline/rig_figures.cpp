@@ -3,19 +3,16 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <numbers>
 #include <set>
 
 #include <fmt/format.h>
 
+#include "core/units.h"
 #include "pipeline/report_figures.h"
 
 namespace heddle::pipeline {
 
 namespace {
-
-constexpr double degrees = 180.0 / std::numbers::pi;
-constexpr double zero_celsius = 273.15;
 
 struct Parameter {
   double FrictionRigRow::*value;

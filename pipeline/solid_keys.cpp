@@ -5,6 +5,8 @@
 
 #include <fmt/format.h>
 
+#include "pipeline/key_table.h"
+
 namespace heddle::pipeline {
 namespace {
 
@@ -34,7 +36,6 @@ void take(const Settings& settings, const std::string& path, Value& value) {
 // clang-format off
 std::vector<Key> solid_keys() {
   const auto stage = Stage::solid;
-  const auto defaulted = Presence::defaulted;
   return {
       {.path = "solid.per_pitch", .type = KeyType::integer, .presence = defaulted, .default_text = "32",
        .range = "[4, 512]", .stage = stage,
@@ -68,7 +69,6 @@ std::vector<Key> solid_keys() {
 
 std::vector<Key> voxel_keys() {
   const auto stage = Stage::voxels;
-  const auto required = Presence::required;
   const std::string texgen = "cell.voxels.format=texgen", labelled = "cell.voxels.format=labels";
   std::vector<Key> keys{
       {.path = "cell.voxels.file", .type = KeyType::file, .presence = required, .stage = stage,

@@ -3,14 +3,6 @@
 #include "pipeline/key_table.h"
 
 namespace heddle::pipeline {
-namespace {
-
-constexpr auto required = Presence::required;
-constexpr auto defaulted = Presence::defaulted;
-constexpr auto optional = Presence::optional;
-
-}  // namespace
-
 // A table reads better in rows than one field a line.
 // clang-format off
 std::vector<Key> process_keys() {

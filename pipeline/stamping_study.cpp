@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cmath>
 #include <iostream>
-#include <numbers>
 
 #include <fmt/format.h>
 
@@ -23,7 +22,6 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr double degrees = 180.0 / std::numbers::pi;
 const std::string given = "given";
 
 // ---- which stampings

@@ -6,6 +6,7 @@
 
 #include <fmt/format.h>
 
+#include "pipeline/key_table.h"
 #include "pipeline/value_reader.h"
 
 namespace heddle::pipeline {
@@ -13,7 +14,6 @@ namespace heddle::pipeline {
 // clang-format off
 std::vector<Key> stamping_study_keys() {
   const auto stage = Stage::stamping;
-  const auto optional = Presence::optional;
   return {
       {.path = "stamping_study.binder_force", .type = KeyType::list, .unit = "N", .presence = optional,
        .range = "(0 N, )", .stage = stage,

@@ -1,10 +1,10 @@
 // The page of a study of stampings: what binder force, punch speed and the model do to force and strains.
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 
 #include <fmt/format.h>
 
+#include "core/units.h"
 #include "pipeline/chart.h"
 #include "pipeline/page.h"
 #include "pipeline/report_figures.h"
@@ -13,8 +13,6 @@
 namespace heddle::pipeline {
 
 namespace {
-
-constexpr double degrees = 180.0 / std::numbers::pi;
 
 using Runs = std::vector<const StudiedStamping*>;
 

@@ -3,11 +3,11 @@
 #include <array>
 #include <cmath>
 #include <limits>
-#include <numbers>
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include "core/units.h"
 #include "pipeline/chart.h"
 #include "pipeline/page.h"
 #include "pipeline/report_figures.h"
@@ -17,8 +17,6 @@
 namespace heddle::pipeline {
 
 namespace {
-
-constexpr double degrees = 180.0 / std::numbers::pi;
 
 using Runs = std::vector<const StudiedStamping*>;
 

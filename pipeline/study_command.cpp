@@ -2,7 +2,6 @@
 
 #include <cmath>
 #include <iostream>
-#include <numbers>
 #include <optional>
 
 #include <fmt/format.h>
@@ -11,6 +10,7 @@
 #include "core/hdf5_file.h"
 #include "core/progress.h"
 #include "core/sha256.h"
+#include "core/units.h"
 #include "mesoscale/forming.h"
 #include "pipeline/cache.h"
 #include "pipeline/case.h"
@@ -25,8 +25,6 @@ namespace heddle::pipeline {
 namespace {
 
 namespace study = mesoscale::study;
-
-constexpr double degrees = 180.0 / std::numbers::pi;
 
 // ---- one cell and the cache
 

@@ -2,6 +2,8 @@
 
 #include <algorithm>
 
+#include "pipeline/key_table.h"
+
 namespace heddle::pipeline {
 namespace {
 
@@ -21,7 +23,6 @@ void check_distinct(Problems& problems, std::vector<Value> values, const std::st
 // clang-format off
 std::vector<Key> cell_study_keys() {
   const auto stage = Stage::study;
-  const auto optional = Presence::optional, defaulted = Presence::defaulted;
   return {
       {.path = "study.pattern", .type = KeyType::names, .presence = optional, .stage = stage,
        .help = "Weaves beside weave.pattern, for instance [twill 2/2, satin 5/2, matrix 110/011/101]."},

@@ -1,10 +1,10 @@
 // The page of a study of unit cells: what each length, the pattern and shear do to the properties.
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 
 #include <fmt/format.h>
 
+#include "core/units.h"
 #include "pipeline/chart.h"
 #include "pipeline/page.h"
 #include "pipeline/report_figures.h"
@@ -15,8 +15,6 @@ namespace heddle::pipeline {
 namespace {
 
 namespace study = mesoscale::study;
-
-constexpr double degrees = 180.0 / std::numbers::pi;
 
 std::string words_of(study::Dimension dimension) {
   switch (dimension) {

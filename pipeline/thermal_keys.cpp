@@ -4,6 +4,7 @@
 
 #include "mesoscale/state.h"
 #include "pipeline/case_rules.h"
+#include "pipeline/key_table.h"
 
 namespace heddle::pipeline {
 namespace {
@@ -23,7 +24,6 @@ void take(const Settings& settings, const std::string& path, std::optional<doubl
 // A table reads better in rows than one field a line.
 // clang-format off
 std::vector<Key> thermal_keys() {
-  const auto defaulted = Presence::defaulted, optional = Presence::optional;
   std::vector<Key> keys{
       {.path = "thermal.ply.conductivity", .type = KeyType::quantity, .unit = "W/(m K)", .presence = defaulted,
        .default_text = "0.35 W/(m K)", .range = "(0 W/(m K), 1000 W/(m K)]",

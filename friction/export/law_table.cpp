@@ -6,11 +6,11 @@
 #include <array>
 #include <cmath>
 
+#include "core/units.h"
+
 namespace heddle::friction {
 
 namespace {
-
-constexpr double zero_celsius = 273.15;  // [K]
 
 std::vector<double> even_in_log(double low, int decades, int steps) {
   std::vector<double> values;

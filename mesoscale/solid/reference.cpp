@@ -41,10 +41,6 @@ void check_positive(const Matrix6& stiffness) {
     throw NumericalError("homogenisation: the mean stiffness of the cell is not positive definite");
 }
 
-std::array<double, 6> packed(const Eigen::Matrix3d& s) {
-  return {s(0, 0), s(1, 1), s(2, 2), s(0, 1), s(0, 2), s(1, 2)};
-}
-
 // Where each wave stands.
 std::vector<int> places_of(const std::vector<int>& order) {
   std::vector<int> place(order.size());

@@ -16,10 +16,6 @@ Eigen::Matrix3d block_of(const Matrix9& t, int m, int n) {
   return t.block<3, 3>(3 * m, 3 * n);
 }
 
-std::array<double, 6> packed(const Eigen::Matrix3d& s) {
-  return {s(0, 0), s(1, 1), s(2, 2), s(0, 1), s(0, 2), s(1, 2)};
-}
-
 // Six numbers a wave, one array each, so that the compiler works on several waves at once.
 using Symmetric = double[6][largest_block];
 

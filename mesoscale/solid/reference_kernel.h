@@ -17,8 +17,13 @@ struct Waves {
   std::vector<double> even;   ///< cos^2 a + sin^2 a / 3
 };
 
-/// Symbol of the periodic operator: S = sum_t weight_t(k) coefficient[t], symmetric 3 x 3 kept as
-/// {00, 11, 22, 01, 02, 12}; t = xi xi, eta eta, zeta zeta, xi eta, xi zeta, eta zeta.
+/// {00, 11, 22, 01, 02, 12} of a symmetric matrix.
+inline std::array<double, 6> packed(const Eigen::Matrix3d& s) {
+  return {s(0, 0), s(1, 1), s(2, 2), s(0, 1), s(0, 2), s(1, 2)};
+}
+
+/// Symbol of the periodic operator: S = sum_t weight_t(k) coefficient[t], symmetric 3 x 3, packed; t = xi xi,
+/// eta eta, zeta zeta, xi eta, xi zeta, eta zeta.
 struct PeriodicSymbol {
   explicit PeriodicSymbol(const Eigen::Matrix<double, 9, 9>& pulled);
   std::array<std::array<double, 6>, 6> coefficient;

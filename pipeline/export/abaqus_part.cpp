@@ -10,7 +10,7 @@ namespace {
 
 constexpr double shear_correction = 5.0 / 6.0;  // of a plate of one material (Reissner)
 
-std::string head(const PartModel& model) {
+std::string abaqus_head(const PartModel& model) {
   return fmt::format(
       "** heddle: the formed part {}, solid. Units: mm, N, MPa, tonne, degC.\n"
       "** Not run in Abaqus. Try first: one cell alone, held at six freedoms and warmed by a kelvin, must "
@@ -45,7 +45,7 @@ std::string section(const PartModel& model, std::size_t f) {
 
 std::string abaqus_part(const PartModel& model) {
   const auto number = [](int node) { return node + 1; };
-  std::string out = head(model) + "*NODE, NSET=PART\n";
+  std::string out = abaqus_head(model) + "*NODE, NSET=PART\n";
   for (std::size_t n = 0; n < model.mesh.position.size(); ++n) {
     const auto& x = model.mesh.position[n];
     out += fmt::format("{}, {:.9g}, {:.9g}, {:.9g}\n", n + 1, 1e3 * x[0], 1e3 * x[1], 1e3 * x[2]);

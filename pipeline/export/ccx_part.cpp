@@ -107,7 +107,7 @@ std::string material(const std::string& name, const mesoscale::solid::Matrix6& c
   return out + fmt::format("*DENSITY\n{:.10g}\n", 1e-12 * density);
 }
 
-std::string head(const PartModel& model) {
+std::string ccx_head(const PartModel& model) {
   return fmt::format(
       "** heddle: the formed part {}, solid. Units: mm, N, MPa, tonne, degC.\n"
       "** Three layers of bricks a cell; together they have the cell's A, B, D and thermal resultants.\n"
@@ -146,7 +146,7 @@ int ccx_middle_node(int node) {
 std::string ccx_part_body(const PartModel& model) {
   const std::vector<PartLayers> layers = part_layers(model);
   const Bricks bricks(model, layers.front().middle_share);
-  std::string out = head(model) + bricks.nodes();
+  std::string out = ccx_head(model) + bricks.nodes();
   for (std::size_t f = 0; f < layers.size(); ++f)
     for (int layer = 0; layer < 3; ++layer)
       out +=

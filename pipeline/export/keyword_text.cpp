@@ -5,10 +5,12 @@
 #include <fmt/format.h>
 #include <Eigen/Geometry>
 
+#include "core/units.h"
+
 namespace heddle::pipeline {
 
 double celsius(const PartTemperature& temperature) {
-  return temperature.value - 273.15;
+  return temperature.value - zero_celsius;
 }
 
 std::string data_lines(const std::vector<double>& values) {

@@ -121,7 +121,7 @@ TEST_CASE("a slab between two tools cools by its Fourier series", "[macroscale][
     double low = n * std::numbers::pi, high = low + 0.5 * std::numbers::pi;
     for (int i = 0; i < 200; ++i) {
       const double b = 0.5 * (low + high);
-      (b * std::sin(b) < biot * std::cos(b) == (n % 2 == 0) ? low : high) = b;
+      ((b * std::sin(b) < biot * std::cos(b)) == (n % 2 == 0) ? low : high) = b;
     }
     return 0.5 * (low + high);
   };
