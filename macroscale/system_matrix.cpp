@@ -9,11 +9,7 @@
 
 namespace heddle::macroscale {
 
-namespace {
-
 using Eigen::Matrix3d;
-
-}  // namespace
 
 int System::block(int row_node, int column_node) const {
   const auto begin = block_row_.begin() + block_start_[column_node],

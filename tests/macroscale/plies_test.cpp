@@ -93,7 +93,8 @@ TEST_CASE("with plies in contact the residual is the slope of the potential, the
   VectorXd x = b->state.x, d = VectorXd::Zero(x.size());
   shake(x, 5e-5, 7);
   shake(d, 1.0, 11);
-  check_slopes(system, b->step, x, d);
+  check_slopes(system, b->step, x,
+               0.1 * d);  // not far: friction that has just begun to slip bends within nanometres
   check_slopes_of_pairs(system, b->step, x, d);
 }
 

@@ -203,6 +203,26 @@ TEST_CASE("the place of the largest shear is the innermost of those alike, and m
   CHECK(place.level_rms == Approx(0.1));
 }
 
+TEST_CASE("a study of a quarter says of shear what the whole says", "[pipeline][study]") {
+  const Scratch scratch;
+  auto options = heddle::test::options_for(scratch / "study", heddle::test::small_stamping());
+  options.cache = scratch / "cache";
+  heddle::test::warm(options.cache);
+  options.assignments.insert(options.assignments.end(),
+                             {"blank.grid_error=off", "stamping_study={vary: ['blank.symmetry: quarter']}"});
+  REQUIRE(pipeline::study_case(options) == pipeline::exit_done);
+  const CsvTable table = read_csv(scratch / "study/table.csv");
+  REQUIRE(table.rows.size() == 2);
+  for (const char* name : {"shear_place_radius_mm", "shear_deep_rms_deg", "shear_level_rms_deg"}) {
+    const auto found = std::find(table.header.cells.begin(), table.header.cells.end(), name);
+    REQUIRE(found != table.header.cells.end());
+    const auto column = static_cast<std::size_t>(found - table.header.cells.begin());
+    const double whole = std::stod(table.rows[0].cells[column]);
+    CHECK(whole > 0.0);
+    CHECK(std::stod(table.rows[1].cells[column]) == Approx(whole).epsilon(1e-4));
+  }
+}
+
 TEST_CASE("a study varies the friction of one tool, and says what each stamping had", "[pipeline][study]") {
   const Scratch scratch;
   auto options = heddle::test::options_for(scratch / "study", heddle::test::small_stamping());
