@@ -28,7 +28,8 @@ namespace {
 constexpr const char* header =
     "case,law,mu,binder_force_N,speed_mm_s,orientation_deg,spacing_mm,blank_mm,round,stroke_mm,tension_"
     "factor,"
-    "shear_factor,nodes,finished,steps,rejected,newton,peak_force_N,shear_max_deg,energy_residual,"
+    "shear_factor,thermal,free_tilt,nodes,finished,steps,rejected,newton,peak_force_N,shear_max_deg,energy_"
+    "residual,"
     "force_balance,"
     "crush_share,friction_swing,cpu_s,failure";
 
@@ -39,14 +40,15 @@ std::string row_of(int number, const test::RandomStamping& c, const test::Robust
   std::string failure = v.failure;
   std::replace(failure.begin(), failure.end(), ',', ';');
   return fmt::format(
-      "{},{},{:.4g},{:.5g},{:.4g},{:.2f},{:.3f},{:.1f},{},{:.2f},{:.3g},{:.3g},{},{},{},{},{},"
+      "{},{},{:.4g},{:.5g},{:.4g},{:.2f},{:.3f},{:.1f},{},{:.2f},{:.3g},{:.3g},{},{},{},{},{},{},{},"
       "{:.5g},{:.2f},{:.3g},{:.3g},{:.3g},{:.3g},{:.1f},{}",
       number, friction::id_of(c.friction.law), c.coefficient, c.spec.process.binder_force, 1e3 * c.speed,
       degrees * blank.orientation, 1e3 * blank.spacing, 1e3 * (round ? 2.0 * blank.radius : blank.size[0]),
-      round ? 1 : 0, 1e3 * c.spec.process.stroke, c.tension_factor, c.shear_factor, v.summary.nodes,
-      v.finished ? 1 : 0, v.summary.steps, v.summary.rejected_steps, v.summary.newton_iterations,
-      v.summary.peak_punch_force, degrees * v.summary.shear_angle_max, v.energy_residual, v.force_balance,
-      v.penetration, v.summary.friction_swing, cpu, failure.empty() ? "-" : failure);
+      round ? 1 : 0, 1e3 * c.spec.process.stroke, c.tension_factor, c.shear_factor, c.thermal ? 1 : 0,
+      c.spec.binder.free_tilt ? 1 : 0, v.summary.nodes, v.finished ? 1 : 0, v.summary.steps,
+      v.summary.rejected_steps, v.summary.newton_iterations, v.summary.peak_punch_force,
+      degrees * v.summary.shear_angle_max, v.energy_residual, v.force_balance, v.penetration,
+      v.summary.friction_swing, cpu, failure.empty() ? "-" : failure);
 }
 
 std::filesystem::path path_of(const std::string& name) {

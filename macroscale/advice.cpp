@@ -20,10 +20,7 @@ std::string shorter_stroke(const StampingFailure& failure) {
 }
 
 std::string while_closing(const StampingFailure& failure, const StampingSpec& spec) {
-  // No woven fabric holds 5 MPa; the whole blank's area gives the least pressure there can be.
-  const double area_of_blank = area(outline_of(spec.blank));
-  const bool crushed = area_of_blank > 0.0 && spec.process.binder_force > 5e6 * area_of_blank;
-  if (crushed || failure.kind == FailureKind::pressed_through)
+  if (failure.kind == FailureKind::pressed_through)
     return fmt::format(
         "The binder crushes the fabric before the punch moves: less force ({}), or a larger blank that "
         "spreads it.",

@@ -205,6 +205,15 @@ Problems check(const StampingSpec& spec) {
            "must be >= 1", "100 steps of equal stroke in the shipped case.");
   f.demand(process.binder_force > 0.0, "process.binder_force.range"_rule, "process.binder_force",
            fmt::format("{:g} N", process.binder_force), "must be > 0", "650 to 3000 N in the paper.");
+  // The whole blank's area gives the least pressure there can be.
+  const double crushing = half > 0.0 ? crush_pressure * area(outline_of(blank)) : 0.0;
+  f.demand(
+      crushing <= 0.0 || !(process.binder_force > crushing) || binder.control == BinderControl::gap,
+      "process.binder_force.crush"_rule, "process.binder_force", fmt::format("{:g} N", process.binder_force),
+      fmt::format("must stay below {:.4g} N: spread over the whole blank it is {:g} MPa, which crushes any "
+                  "woven fabric",
+                  crushing, 1e-6 * crush_pressure),
+      "Less force, or a larger blank that spreads it.", {size_key(blank)});
   f.demand(artefact.mass_scaling > 0.0, "artefact.mass_scaling.range"_rule, "artefact.mass_scaling",
            fmt::format("{:g}", artefact.mass_scaling), "must be > 0", "1 is true mass.");
   f.demand(artefact.stabilisation >= 0.0, "artefact.stabilisation.range"_rule, "artefact.stabilisation",

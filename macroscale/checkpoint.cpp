@@ -17,7 +17,7 @@ namespace heddle::macroscale {
 namespace {
 
 // One name a member. A member added to HistoryRow must be added here too: the size tells.
-static_assert(sizeof(HistoryRow) == 34 * sizeof(double) + sizeof(std::optional<HeatRow>),
+static_assert(sizeof(HistoryRow) == 35 * sizeof(double) + sizeof(std::optional<HeatRow>),
               "HistoryRow has changed: name its new members here");
 template <class Row, class Visit>
 void each_number(Row& r, const Visit& visit) {
@@ -57,6 +57,7 @@ void each_number(Row& r, const Visit& visit) {
   visit("force_balance", r.force_balance);
   visit("friction_work_outside", r.friction_work_outside);
   visit("punch_deflection", r.punch_deflection);
+  visit("binder_tilt", r.binder_tilt);
 }
 
 static_assert(sizeof(HeatRow) == 10 * sizeof(double), "HeatRow has changed: keep its new members");

@@ -63,7 +63,7 @@ StepSummary settle(Scene& scene, System& system, const SolveOptions& options, St
   for (int k = 0; k < static_cast<int>(scene.tools.size()); ++k) {
     if (scene.tools[k].role != Role::binder) continue;
     for (int i = 0; i < scene.blank.nodes(); ++i)
-      if (system.contact_at(state.node(i), k, system.tool_position(state, k)).normal.pressure > 0.0)
+      if (system.contact_at(state.node(i), k, system.pose(state, k)).normal.pressure > 0.0)
         scene.held[3 * i] = scene.held[3 * i + 1] = 1;
   }
   const StepSummary summary = rest(system, settling, dt, steps, state, step);

@@ -55,7 +55,11 @@ void add_to_history(HistoryRow& row, const StepAccount& account, const Scene& sc
 void finish_row(HistoryRow& row, const BlankState& blank, const State& state, const System& system) {
   const Scene& scene = system.scene();
   row.punch_displacement = -state.tool_z[punch];
-  row.punch_deflection = system.tool_position(state, punch) - state.tool_z[punch];
+  row.punch_deflection = system.pose(state, punch).z - state.tool_z[punch];
+  row.binder_tilt = 0.0;
+  for (std::size_t k = 0; k < scene.tools.size(); ++k)
+    row.binder_tilt =
+        std::max(row.binder_tilt, angle_of(scene.tools[k], system.pose(state, static_cast<int>(k))));
   measure_blank(row, blank, state, scene);
   if (scene.heat) row.heat = heat_row(scene, state.heat, state.time);
 }

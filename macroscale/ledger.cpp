@@ -103,6 +103,10 @@ Increment twist_increment(const System& system, const State& start, const State&
   return sum;
 }
 
+Vector3d unknowns(const Pose& pose) {
+  return {pose.z, pose.lift[0], pose.lift[1]};
+}
+
 // Work on a tool with an unknown of its own, and what its spring took.
 void add_drive(const System& system, const State& start, const State& end, int k, StepLedger& ledger) {
   const Tool& tool = system.scene().tools[k];
@@ -111,6 +115,12 @@ void add_drive(const System& system, const State& start, const State& end, int k
   const double stored = after.spring_energy - before.spring_energy;
   ledger.press += stored;
   ledger.numerical += after.spring_force * (u1 - u0) - stored;
+  for (int u = 1; u < unknowns_of(tool); ++u) {
+    const double l0 = start.x[system.unknown_of(k) + u], l1 = end.x[system.unknown_of(k) + u];
+    const double stored_by_lift = tilt_drive_at(tool, l1).energy - tilt_drive_at(tool, l0).energy;
+    ledger.press += stored_by_lift;
+    ledger.numerical += tilt_drive_at(tool, l1).force * (l1 - l0) - stored_by_lift;
+  }
   if (tool.motion == Motion::sprung) {
     ledger.work_driven -= after.spring_force * (end.tool_z[k] - start.tool_z[k]);
   } else {
@@ -203,7 +213,7 @@ StepAccount account(const System& system, const StepData& step, const State& end
   const auto added_by_shear = [&](const Vector3d& x, int k, int i, double held) {
     if (reached.contact_shear.empty()) return 0.0;
     return system.contact_area(reached, i) *
-               system.contact_at(reached, x, k, i, system.tool_position(end, k)).normal.energy -
+               system.contact_at(reached, x, k, i, system.pose(end, k)).normal.energy -
            held;
   };
   const bool rubs = scene.friction && !step.frictionless;
@@ -211,18 +221,23 @@ StepAccount account(const System& system, const StepData& step, const State& end
     Vector3d on_tool = Vector3d::Zero();
     double rubbed = 0.0;
     const FrictionSettings settings = system.friction_settings(k);
-    const double z0 = system.tool_position(start, k), z1 = system.tool_position(end, k);
-    const double tool_motion = z1 - z0;
+    const Tool& tool = scene.tools[k];
+    const Pose before = system.pose(start, k), after = system.pose(end, k);
     for (int i = 0; i < system.contacts(); ++i) {
       const double area = system.contact_area(step, i);
       const ContactPoint& at = system.contact_points()[i];
       const Vector3d x0 = at_point(at, start.x), x1 = at_point(at, end.x);
-      const Vector3d step_of_point = x1 - x0 - Vector3d(0, 0, tool_motion);
-      const NormalContact c0 = system.contact_at(step, x0, k, i, z0).normal;
-      const auto [d, c] = system.contact_at(step, x1, k, i, z1);
+      const Vector3d step_of_point = x1 - x0 - carried(tool, before, after, x0);
+      const NormalContact c0 = system.contact_at(step, x0, k, i, before).normal;
+      const auto [d, c] = system.contact_at(step, x1, k, i, after);
       Vector3d gradient = -area * c.pressure * d.normal;
       compaction.stored += area * (c.energy - c0.energy) + added_by_shear(x1, k, i, area * c.energy);
-      compaction.work += gradient.dot(step_of_point);
+      compaction.work +=
+          tool.tilt
+              ? gradient.dot(x1 - x0) -
+                    area * c.pressure *
+                        slopes_at(*tool.tilt, after, x1, d.normal).dot(unknowns(after) - unknowns(before))
+              : gradient.dot(step_of_point);
       if (rubs && step.friction[k][i].load > 0.0) {
         const FrictionPoint& point = step.friction[k][i];
         const Vector3d v = step_of_point / step.dt;
@@ -240,8 +255,8 @@ StepAccount account(const System& system, const StepData& step, const State& end
     ledger.friction.push_back(rubbed);
     result.forces.on_tool.push_back(on_tool);
     on_blank -= on_tool;
-    if (scene.tools[k].motion == Motion::driven) ledger.work_driven -= on_tool.z() * tool_motion;
-    if (has_unknown(scene.tools[k])) add_drive(system, start, end, k, ledger);
+    if (tool.motion == Motion::driven) ledger.work_driven -= on_tool.z() * (after.z - before.z);
+    if (has_unknown(tool)) add_drive(system, start, end, k, ledger);
   }
   ledger.compaction = compaction.stored;
   ledger.numerical += compaction.work - compaction.stored;

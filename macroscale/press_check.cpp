@@ -2,7 +2,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <limits>
+#include <string>
 #include <utility>
 
 #include <fmt/format.h>
@@ -59,11 +61,40 @@ Problems check_bottom(const StampingSpec& spec) {
   return problems;
 }
 
+// One plate that carries its force at the punch's axis.
+Problems check_free_tilt(const StampingSpec& spec) {
+  if (!spec.binder.free_tilt || spec.binder.control == BinderControl::gap) return {};
+  Problems problems;
+  const auto refuse_if = [&](bool wrong, RuleId id, std::string rule, std::string way_out,
+                             std::string other) {
+    if (wrong)
+      problems.push_back({std::move(id),
+                          "tools.binder.tilt",
+                          "",
+                          std::move(rule),
+                          std::move(way_out),
+                          "",
+                          0,
+                          {std::move(other)}});
+  };
+  refuse_if(spec.binder.sectors > 1, "tools.binder.tilt.sectors"_rule,
+            "must be held where the binder is split: sectors move by themselves already",
+            "Leave it out, or leave tools.binder.sectors out.", "tools.binder.sectors");
+  refuse_if(spec.process.press.binder_tilt != 0.0, "tools.binder.tilt.angle"_rule,
+            "must be held where effects.binder_tilt holds the binder at an angle", "Leave one of them out.",
+            "effects.binder_tilt.angle");
+  refuse_if(spec.blank.symmetry != Symmetry::none, "tools.binder.tilt.symmetry"_rule,
+            "must be held in a part of which a piece is computed: what is symmetric does not tilt its binder",
+            "Leave it out, or blank.symmetry: then the whole blank is computed.", "blank.symmetry");
+  return problems;
+}
+
 }  // namespace
 
 Problems check_press(const StampingSpec& spec) {
   Problems problems = check_offset(spec);
-  for (Problem& problem : check_bottom(spec)) problems.push_back(std::move(problem));
+  for (Problems more : {check_bottom(spec), check_free_tilt(spec)})
+    std::move(more.begin(), more.end(), std::back_inserter(problems));
   return problems;
 }
 

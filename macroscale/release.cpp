@@ -26,11 +26,11 @@ double pressed_by(const System& system, const State& state, int k) {
   if (system.scene().compaction_follows_shear)
     now.contact_shear =
         contact_shear_angle(system.scene().blank, system.scene().contact_sites, state.corner_angle);
-  const double z = system.tool_position(state, k);
+  const Pose pose = system.pose(state, k);
   double energy = 0.0;
   for (int i = 0; i < system.contacts(); ++i)
     energy += system.contact_area(now, i) *
-              system.contact_at(now, at_point(system.contact_points()[i], state.x), k, i, z).normal.energy;
+              system.contact_at(now, at_point(system.contact_points()[i], state.x), k, i, pose).normal.energy;
   return energy;
 }
 
@@ -43,8 +43,11 @@ void book_departure(HistoryRow& row, const System& system, const State& state) {
     if (stays(tool)) continue;
     const double all = images(scene.blank.symmetry);
     const double pressed = all * pressed_by(system, state, k);
-    const double sprung =
-        has_unknown(tool) ? all * drive_at(tool, state.x[system.unknown_of(k)]).spring_energy : 0.0;
+    double sprung = 0.0;
+    for (int u = 0; u < unknowns_of(tool); ++u) {
+      const double unknown = state.x[system.unknown_of(k) + u];
+      sprung += all * (u == 0 ? drive_at(tool, unknown) : tilt_drive_at(tool, unknown)).spring_energy;
+    }
     (tool.role == Role::punch ? row.work_punch : row.work_binder) -= pressed + sprung;
     row.energy_compaction -= pressed;
     row.energy_press -= sprung;
@@ -125,7 +128,7 @@ Released release_blank(const Scene& scene, const System& system, const State& st
   released.blank = blank_state(free, now, nullptr);
   measure_blank(row, released.blank, now, left);
   row.ledger_residual = ledger_residual(row);
-  row.punch_displacement = row.punch_deflection = 0.0;
+  row.punch_displacement = row.punch_deflection = row.binder_tilt = 0.0;
   released.release = {row, largest_way(left.blank, state, now)};
   return released;
 }

@@ -49,20 +49,21 @@ struct Scene {
   bool compaction_follows_shear = false;  ///< else the table of gamma = 0 on initial areas
   std::optional<HeatModel> heat;          ///< absent: one temperature a run
 
-  int loaded_tools() const {  ///< those with an unknown of their own
+  int unknowns_of_tools() const {
     int n = 0;
-    for (const Tool& tool : tools) n += has_unknown(tool);
+    for (const Tool& tool : tools) n += unknowns_of(tool);
     return n;
   }
   /// Distance of the middles of two plies that do not press each other [m].
   double ply_rest() const { return fabric->thickness - nesting; }
-  int unknowns() const { return 3 * blank.nodes() + loaded_tools(); }
+  int unknowns() const { return 3 * blank.nodes() + unknowns_of_tools(); }
   /// Temperature of a blank without `heat`, a time after the punch has touched [K]:
   /// T_tool + (T_blank - T_tool) exp(-rate t).
   double blank_temperature_at(double time) const;
 };
 
-/// Where everything is at one instant. Unknowns: 3 a node (x, y, z), then one a loaded (z) or sprung tool.
+/// Where everything is at one instant. Unknowns: 3 a node (x, y, z), then those of each tool: z of a loaded
+/// one (and its lifts where it tilts), how far a sprung one stays behind.
 struct State {
   double time = 0.0;           ///< [s]
   Eigen::VectorXd x;           ///< positions [m]

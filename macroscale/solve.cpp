@@ -76,8 +76,7 @@ void place(const System& system, const StepData& step, const VectorXd& x, State&
   end.v = (x - start.x) / step.dt;
   end.tool_z.resize(scene.tools.size());
   for (int k = 0; k < static_cast<int>(scene.tools.size()); ++k)
-    end.tool_z[k] =
-        scene.tools[k].motion == Motion::sprung ? step.tool_z[k] : system.tool_position(step, x, k);
+    end.tool_z[k] = scene.tools[k].motion == Motion::sprung ? step.tool_z[k] : system.pose(step, x, k).z;
   end.corner_angle = corner_angles(scene.blank, end);
   end.shear_memory = start.shear_memory;
   for (std::size_t k = 0; k < end.shear_memory.size(); ++k)
@@ -162,9 +161,13 @@ Fault fault_of(const System& system, const StepData& step, const State& end, boo
 }  // namespace
 
 std::string name_of(const System& system, int unknown) {
-  const int nodes = system.scene().blank.nodes();
-  return unknown < 3 * nodes ? fmt::format("node {}", unknown / 3)
-                             : fmt::format("loaded tool {}", unknown - 3 * nodes);
+  const std::vector<Tool>& tools = system.scene().tools;
+  for (int k = 0; k < static_cast<int>(tools.size()); ++k) {
+    const int place = unknown - system.unknown_of(k);
+    if (system.unknown_of(k) < 0 || place < 0 || place >= unknowns_of(tools[k])) continue;
+    return fmt::format("{} (tool {}){}", name_of(tools[k].role), k, place == 0 ? "" : ", its tilt");
+  }
+  return fmt::format("node {}", unknown / 3);
 }
 
 std::string name_of_contact(const System& system, int point) {

@@ -61,7 +61,7 @@ State state_at_iterate(const System& system, const StepData& step);
 /// Trellis angle of each corner of a blank whose nodes stand as the state says, 4 a quad [rad].
 std::vector<double> corner_angles(const Blank& blank, const State& state);
 
-/// Name of an unknown: "node 12", or "loaded tool 0" for those behind the nodes.
+/// Name of an unknown: "node 12", or "binder (tool 2)" for those behind the nodes.
 std::string name_of(const System& system, int unknown);
 /// Of a contact point: "node 12", or "cell 7" where contact is at Gauss points.
 std::string name_of_contact(const System& system, int point);

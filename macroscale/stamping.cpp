@@ -69,7 +69,10 @@ void describe_iterate(StampingFailure& failure, const System& system, const Step
     failure.residual.push_back(std::isfinite(residual) ? residual : -1.0);
     add(3 * i, residual, {x[3 * i], x[3 * i + 1], x[3 * i + 2]});
   }
-  for (int k = 3 * nodes; k < system.size(); ++k) add(k, std::abs(g[k]), {0.0, 0.0, x[k]});
+  for (int k = 0; k < static_cast<int>(system.scene().tools.size()); ++k)
+    for (int u = 0; u < unknowns_of(system.scene().tools[k]); ++u)
+      add(system.unknown_of(k) + u, std::abs(g[system.unknown_of(k) + u]),
+          {0.0, 0.0, system.pose(attempt, x, k).z});
   constexpr std::size_t shown = 10;
   std::stable_sort(failure.worst.begin(), failure.worst.end(),
                    [](const auto& a, const auto& b) { return a.residual > b.residual; });

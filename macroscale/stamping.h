@@ -90,8 +90,9 @@ struct BinderSpec {             ///< flat ring under force, free to move in z
   BinderControl control = BinderControl::force;
   double gap = 0.0;  ///< between the faces of binder and die, for BinderControl::gap [m]
   double stiffness =
-      0.0;          ///< of the springs behind the binder: its force grows by this as it is lifted [N/m]
-  int sectors = 1;  ///< equal ones, each with its share of force, springs and mass, free by itself
+      0.0;  ///< of the springs behind the binder: its force grows by this as it is lifted [N/m]
+  bool free_tilt = false;  ///< turns about level axes as the fabric below it asks; else it stays level
+  int sectors = 1;         ///< equal ones, each with its share of force, springs and mass, free by itself
   std::optional<ToolFileSpec> file;
   std::optional<double> friction_coefficient;  ///< constant, in place of the law and its effects [-]
 };
@@ -116,6 +117,9 @@ struct ProcessSpec {
   /// What the press truly puts on the binder [N].
   double applied_binder_force() const { return binder_force * (1.0 + press.binder_force_error); }
 };
+
+/// No woven fabric holds more under a binder [Pa].
+inline constexpr double crush_pressure = 5e6;
 
 /// Non-physical helps. Off here; a report that used one says so.
 struct ArtefactSpec {
@@ -173,6 +177,7 @@ struct HistoryRow {
   double force_balance = 0.0;          ///< |sum F - sum m a| [N]
   double friction_work_outside = 0.0;  ///< done outside the calibrated box [J]
   double punch_deflection = 0.0;       ///< how far the punch stays behind punch_displacement, its drive's [m]
+  double binder_tilt = 0.0;            ///< of a binder that is free to tilt, against level [rad]
   std::optional<HeatRow> heat;         ///< of a run with temperatures
 };
 
@@ -314,7 +319,7 @@ struct StampingFailure {
   BlankState blank;              ///< the last iterate
   std::vector<double> residual;  ///< out-of-balance force of each node there [N]; -1 = not finite
   struct Unknown {
-    std::string name;                  ///< "node 12", "loaded tool 0"
+    std::string name;                  ///< "node 12", "binder (tool 2)"
     double residual = 0.0;             ///< [N]
     std::array<double, 3> position{};  ///< of a node [m]; of a tool {0, 0, z}
   };

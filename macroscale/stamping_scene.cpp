@@ -56,6 +56,8 @@ std::vector<Tool> binders_of(const StampingSpec& spec, const Shape& whole, doubl
     if (binder.control == BinderControl::gap) tool = {Role::binder, tool.shape, Motion::fixed};
     if (tool.motion == Motion::loaded) tool.stiffness = share * binder.stiffness;
     tool.turn = tilt_of(spec.process.press, face);
+    if (binder.free_tilt && tool.motion == Motion::loaded)
+      tool.tilt = Tilt{Vector3d(0.0, 0.0, face), binder_face(spec).arm};
     tools.push_back(tool);
   }
   return tools;
@@ -65,7 +67,7 @@ std::vector<Tool> binders_of(const StampingSpec& spec, const Shape& whole, doubl
 double closed_approach(const StampingSpec& spec, const mesoscale::FabricProperties& fabric, double weight) {
   if (spec.binder.control == BinderControl::gap)
     return (stack_thickness(spec.blank, fabric.thickness) - spec.binder.gap) / (2.0 * spec.blank.plies);
-  const double pressure = (spec.process.applied_binder_force() + weight) / binder_area(spec);
+  const double pressure = (spec.process.applied_binder_force() + weight) / binder_face(spec).area;
   return approach_at(fabric.compaction.curves().front(), pressure);
 }
 
@@ -160,9 +162,9 @@ StateSizes state_sizes(const StampingSpec& spec) {
   const PressSpec& press = spec.process.press;
   const bool sprung = press.compliance > 0.0 || press.force_limit > 0.0;
   const bool loaded = spec.binder.control == BinderControl::force;
+  const int of_binder = loaded ? spec.binder.sectors + (spec.binder.free_tilt ? 2 : 0) : 0;
   const int dies = spec.die.bottom == DieBottom::flat ? 2 : 1;
-  return {1 + dies + spec.binder.sectors, (sprung ? 1 : 0) + (loaded ? spec.binder.sectors : 0),
-          spec.self_contact};
+  return {1 + dies + spec.binder.sectors, (sprung ? 1 : 0) + of_binder, spec.self_contact};
 }
 
 }  // namespace heddle::macroscale

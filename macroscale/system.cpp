@@ -58,7 +58,7 @@ System::System(const Scene& scene)
   int next = 3 * scene.blank.nodes();
   for (const Tool& tool : scene.tools) {
     body_.push_back(has_unknown(tool) ? next : -1);
-    if (has_unknown(tool)) mass_[next++] = tool.mass;
+    for (int u = 0; u < unknowns_of(tool); ++u) mass_[next++] = tool.mass;
   }
   build_pattern();
   assemble_constant();
@@ -81,26 +81,33 @@ double System::twist_stiffness(int quad) const {
   return scene_.blank.share[quad] * (twist_share * mean / (spacing[0] * spacing[1]));
 }
 
-double System::tool_position(const StepData& step, const VectorXd& x, int k) const {
-  if (body_[k] < 0) return step.tool_z[k];
-  return scene_.tools[k].motion == Motion::sprung ? step.tool_z[k] + x[body_[k]] : x[body_[k]];
+Pose System::pose_of(const VectorXd& x, int k, double tool_z) const {
+  const Tool& tool = scene_.tools[k];
+  Pose pose{tool.motion == Motion::sprung ? tool_z + x[body_[k]] : tool_z};
+  if (unknowns_of(tool) == 3) pose.lift = {x[body_[k] + 1], x[body_[k] + 2]};
+  return pose;
 }
 
-double System::tool_position(const State& state, int k) const {
-  return scene_.tools[k].motion == Motion::sprung ? state.tool_z[k] + state.x[body_[k]] : state.tool_z[k];
+Pose System::pose(const StepData& step, const VectorXd& x, int k) const {
+  return pose_of(x, k, scene_.tools[k].motion == Motion::loaded ? x[body_[k]] : step.tool_z[k]);
 }
 
-ToolContact System::contact_at(const Vector3d& x, int k, double z) const {
+Pose System::pose(const State& state, int k) const {
+  return pose_of(state.x, k, state.tool_z[k]);
+}
+
+ToolContact System::contact_at(const Vector3d& x, int k, const Pose& pose) const {
   ToolContact contact;
-  contact.surface = distance(scene_.tools[k], x - Vector3d(0, 0, z));
+  contact.surface = distance(scene_.tools[k], pose, x);
   contact.normal = normal_contact(compaction_, contact.surface.distance, 0.5 * scene_.fabric->thickness);
   return contact;
 }
 
-ToolContact System::contact_at(const StepData& step, const Vector3d& x, int k, int i, double z) const {
-  if (step.contact_shear.empty()) return contact_at(x, k, z);
+ToolContact System::contact_at(const StepData& step, const Vector3d& x, int k, int i,
+                               const Pose& pose) const {
+  if (step.contact_shear.empty()) return contact_at(x, k, pose);
   ToolContact contact;
-  contact.surface = distance(scene_.tools[k], x - Vector3d(0, 0, z));
+  contact.surface = distance(scene_.tools[k], pose, x);
   contact.normal = normal_contact(scene_.fabric->compaction, step.contact_shear[i], contact.surface.distance,
                                   0.5 * scene_.fabric->thickness);
   return contact;
@@ -111,12 +118,13 @@ double System::contact_area(const StepData& step, int i) const {
 }
 
 ToolContact System::tool_contact(const StepData& step, const VectorXd& x, int k, int i) const {
-  return contact_at(step, at_point(points_[i], x), k, i, tool_position(step, x, k));
+  return contact_at(step, at_point(points_[i], x), k, i, pose(step, x, k));
 }
 
 Vector3d System::relative_velocity(const StepData& step, const VectorXd& x, int k, int i) const {
-  const double tool_motion = tool_position(step, x, k) - tool_position(*step.start, k);
-  return (at_point(points_[i], x) - at_point(points_[i], step.start->x) - Vector3d(0, 0, tool_motion)) /
+  const Vector3d before = at_point(points_[i], step.start->x);
+  return (at_point(points_[i], x) - before -
+          carried(scene_.tools[k], pose(*step.start, k), pose(step, x, k), before)) /
          step.dt;
 }
 
@@ -254,7 +262,10 @@ PotentialTerms System::potential(const StepData& step, const Position& at) const
   for (int k = 0; k < tools; ++k) {
     e.compaction += ordered_sum(
         contacts(), [&](int i) { return contact_area(step, i) * at.contacts[k][i].normal.energy; });
-    if (body_[k] >= 0) e.loads += drive_at(scene_.tools[k], x[body_[k]]).energy;
+    if (body_[k] < 0) continue;
+    e.loads += drive_at(scene_.tools[k], x[body_[k]]).energy;
+    for (int u = 1; u < unknowns_of(scene_.tools[k]); ++u)
+      e.loads += tilt_drive_at(scene_.tools[k], x[body_[k] + u]).energy;
   }
   e.compaction_plies = ordered_sum(static_cast<int>(step.pairs.size()),
                                    [&](int i) { return step.pairs[i].area * at.ply_contacts[i].energy; });
@@ -287,6 +298,25 @@ Vector3d System::contact_force(const StepData& step, const Position& at, int k, 
   Vector3d force = -contact_area(step, i) * contact.normal.pressure * contact.direction;
   if (!at.friction.empty() && step.friction[k][i].load > 0.0)
     force += friction_force(step.friction[k][i], at.friction[k][i]);
+  return force;
+}
+
+// Slopes of contact, friction and springs to what a tilting tool's unknowns are.
+Vector3d System::force_on_tilting(const StepData& step, const Position& at, int k) const {
+  const Tool& tool = scene_.tools[k];
+  const Pose pose = this->pose(step, at.x, k);
+  Vector3d force = Vector3d::Zero();
+  for (int u = 1; u < 3; ++u) force[u] = tilt_drive_at(tool, at.x[body_[k] + u]).force;
+  for (int i = 0; i < contacts(); ++i) {
+    const KeptContact& contact = at.contacts[k][i];
+    if (contact.normal.pressure > 0.0)
+      force -= contact_area(step, i) * contact.normal.pressure *
+               slopes_at(*tool.tilt, pose, at_point(points_[i], at.x), contact.direction);
+    if (at.friction.empty() || step.friction[k][i].load == 0.0) continue;
+    const Vector3d drag = friction_force(step.friction[k][i], at.friction[k][i]);
+    const std::array<Vector3d, 3> way = ways_at(*tool.tilt, at_point(points_[i], step.start->x));
+    for (int u = 0; u < 3; ++u) force[u] -= drag.dot(way[u]);
+  }
   return force;
 }
 
@@ -344,10 +374,12 @@ VectorXd System::full_gradient(const StepData& step, const Position& at) const {
         for (std::size_t a = 0; a < 4; ++a)
           g.segment<3>(3 * points_[i].node[a]) += points_[i].weight[a] * force[i];
     }
-    if (body_[k] >= 0) {
-      g[body_[k]] += drive_at(scene_.tools[k], x[body_[k]]).force;
+    if (body_[k] < 0) continue;
+    g[body_[k]] += drive_at(scene_.tools[k], x[body_[k]]).force;
+    if (scene_.tools[k].tilt)
+      g.segment<3>(body_[k]) += force_on_tilting(step, at, k);
+    else
       for (const Vector3d& f : force) g[body_[k]] -= f.z();
-    }
   }
   add_forces_of_plies(step, at, g);
   for (std::size_t k = 0; k < scene_.load.size(); ++k) g[static_cast<Eigen::Index>(k)] -= scene_.load[k];

@@ -13,6 +13,7 @@
 #include "macroscale/corner_element.h"
 #include "macroscale/ply_contact.h"
 #include "macroscale/scene.h"
+#include "macroscale/tool_pose.h"
 
 namespace heddle::macroscale {
 
@@ -112,12 +113,12 @@ class System {
   /// Largest diagonal entry of the last assembled matrix [N/m].
   double largest_diagonal() const;
 
-  /// Position of tool k along z at the end of the step: its own unknown if it is loaded, that besides its
+  /// Where tool k stands at the end of the step. Along z: its own unknown if it is loaded, that besides its
   /// drive's if it is sprung.
-  double tool_position(const StepData& step, const Eigen::VectorXd& x, int k) const;
+  Pose pose(const StepData& step, const Eigen::VectorXd& x, int k) const;
   /// The same of a state.
-  double tool_position(const State& state, int k) const;
-  /// The unknown of tool k, or -1.
+  Pose pose(const State& state, int k) const;
+  /// The unknown of tool k along z, or -1; its lifts, if it tilts, are the two behind.
   int unknown_of(int k) const { return body_[k]; }
   /// Nodes or Gauss points: what touches and rubs.
   const std::vector<ContactPoint>& contact_points() const { return points_; }
@@ -170,10 +171,11 @@ class System {
   std::array<double, 2> strain_before(const StepData& step, const Corner& corner, const CornerLaw& law) const;
 
   const Curve& compaction() const { return compaction_; }
-  /// The same for a point at x of the fabric, not sheared, against tool k displaced by z.
-  ToolContact contact_at(const Eigen::Vector3d& x, int k, double z) const;
+  /// The same for a point at x of the fabric, not sheared, against tool k where it stands.
+  ToolContact contact_at(const Eigen::Vector3d& x, int k, const Pose& pose) const;
   /// The same for contact point i, at x, whose fabric is as it is held in the step.
-  ToolContact contact_at(const StepData& step, const Eigen::Vector3d& x, int k, int i, double z) const;
+  ToolContact contact_at(const StepData& step, const Eigen::Vector3d& x, int k, int i,
+                         const Pose& pose) const;
   double mass(int unknown) const { return mass_[unknown]; }
   /// Of a row of friction: a tool may have a law of its own; plies rub by the scene's.
   FrictionSettings friction_settings(int row) const {
@@ -192,14 +194,20 @@ class System {
   void add_contact(const StepData& step, const Position& at, Filter filter);
   void add_contact_in_cells(const StepData& step, const Position& at, Filter filter);
   void add_mirrored();
-  void close_body_row(const StepData& step, const Position& at, int k, int body);
+  void close_tool(const StepData& step, const Position& at, int k, Filter filter);
+  void close_tilting(const StepData& step, const Position& at, int k, Filter filter,
+                     double stiffness_along_z);
   void add_contact_of_plies(const StepData& step, const Position& at, Filter filter);
   void evaluate_plies(const StepData& step, Position& at) const;
   void add_forces_of_plies(const StepData& step, const Position& at, Eigen::VectorXd& g) const;
   void couple(PlyCoupling coupling);
+  Pose pose_of(const Eigen::VectorXd& x, int k, double tool_z) const;
   Eigen::Vector3d contact_force(const StepData& step, const Position& at, int k, int i) const;
+  Eigen::Vector3d force_on_tilting(const StepData& step, const Position& at, int k) const;
   Eigen::Matrix3d contact_stiffness(const StepData& step, const Position& at, int k, int i,
                                     Filter filter) const;
+  Eigen::Matrix3d friction_stiffness(const StepData& step, const Position& at, int k, int i,
+                                     Filter filter) const;
   /// Where a block's first value stands in the matrix, and how many its first column has.
   struct BlockPlace {
     int first, column_length;
@@ -222,14 +230,15 @@ class System {
   int patterns_ = 0;
   Curve compaction_;          ///< of one face at gamma = 0
   std::vector<double> mass_;  ///< per unknown [kg]
-  std::vector<int> body_;     ///< per tool: its unknown, or -1
+  std::vector<int> body_;     ///< per tool: its first unknown, or -1
 
   // Blocks of the lower triangle by node columns: rows >= column, 3 x 3 each.
   std::vector<int> block_start_, block_row_;
   std::vector<BlockPlace> block_place_;
   std::vector<double> constant_;  ///< bending and twist: a multiple of the unit matrix in each block
-  std::vector<std::vector<double>> body_row_;  ///< coupling of each loaded tool with every node unknown
-  std::vector<double> body_diagonal_;
+  std::vector<std::vector<double>> body_row_;  ///< coupling of each unknown of a tool with those of all nodes
+  /// Per unknown of a tool: its diagonal entry, and those with the tool's unknowns behind it.
+  std::vector<std::vector<double>> body_column_;
   struct CornerSlots {
     std::array<int, 6> slot;      ///< cc, aa, bb, ac, bc, ab
     std::array<bool, 6> flipped;  ///< stored transposed because the row must be the larger node

@@ -45,8 +45,10 @@ void System::build_pattern() {
     block_row_.insert(block_row_.end(), column.begin(), column.end());
     block_start_.push_back(static_cast<int>(block_row_.size()));
   }
-  body_row_.assign(scene_.loaded_tools(), std::vector<double>(3 * nodes, 0.0));
-  body_diagonal_.assign(scene_.loaded_tools(), 0.0);
+  body_row_.assign(scene_.unknowns_of_tools(), std::vector<double>(3 * nodes, 0.0));
+  body_column_.clear();
+  for (const Tool& tool : scene_.tools)
+    for (int left = unknowns_of(tool); left > 0; --left) body_column_.emplace_back(left, 0.0);
 
   for (const auto& quad : blank.quads)
     for (const Corner& c : corners_of(quad)) {
@@ -78,7 +80,7 @@ void System::build_pattern() {
   SymmetricPattern pattern;
   pattern.size = size_;
   pattern.column_start.push_back(0);
-  const int bodies = scene_.loaded_tools();
+  const int bodies = scene_.unknowns_of_tools();
   for (int j = 0; j < nodes; ++j)
     for (int c = 0; c < 3; ++c) {
       for (int k = block_start_[j]; k < block_start_[j + 1]; ++k)
@@ -87,7 +89,8 @@ void System::build_pattern() {
       pattern.column_start.push_back(static_cast<int>(pattern.row.size()));
     }
   for (int b = 0; b < bodies; ++b) {
-    pattern.row.push_back(3 * nodes + b);
+    for (std::size_t r = 0; r < body_column_[b].size(); ++r)
+      pattern.row.push_back(3 * nodes + b + static_cast<int>(r));
     pattern.column_start.push_back(static_cast<int>(pattern.row.size()));
   }
   solver_ = std::make_unique<SparseSolver>(std::move(pattern));
@@ -187,36 +190,41 @@ Matrix3d System::contact_stiffness(const StepData& step, const Position& at, int
   // Pressing against a convex tool, the point would rather slide off: negative, so dropped when filtering.
   if (filter == Filter::none && contact.pressure > 0.0)
     stiffness -= area * contact.pressure * tool_contact(step, at.x, k, i).surface.curvature;
+  if (!at.friction.empty() && step.friction[k][i].load > 0.0)
+    stiffness += friction_stiffness(step, at, k, i, filter);
+  return stiffness;
+}
+
+Matrix3d System::friction_stiffness(const StepData& step, const Position& at, int k, int i,
+                                    Filter filter) const {
   const FrictionTangent tangent = filter == Filter::none       ? FrictionTangent::exact
                                   : filter == Filter::positive ? FrictionTangent::convex
                                                                : FrictionTangent::secant;
-  if (!at.friction.empty() && step.friction[k][i].load > 0.0)
-    stiffness +=
-        friction_tangent(friction_settings(k), step.friction[k][i], at.friction[k][i], tangent) / step.dt;
-  return stiffness;
+  return friction_tangent(friction_settings(k), step.friction[k][i], at.friction[k][i], tangent) / step.dt;
 }
 
 void System::add_contact(const StepData& step, const Position& at, Filter filter) {
   if (scene_.contact_sites == ContactSites::gauss) return add_contact_in_cells(step, at, filter);
   const Blank& blank = scene_.blank;
-  for (int k = 0, body = 0; k < static_cast<int>(scene_.tools.size()); ++k) {
+  for (int k = 0; k < static_cast<int>(scene_.tools.size()); ++k) {
     const bool loaded = body_[k] >= 0;
-    std::vector<double>* row = loaded ? &body_row_[body] : nullptr;
+    std::vector<double>* row = loaded ? &body_row_[body_[k] - 3 * blank.nodes()] : nullptr;
     for_each(blank.nodes(), [&, k](int i) {
       const Matrix3d stiffness = contact_stiffness(step, at, k, i, filter);
       add_block(block_start_[i], stiffness);
       if (loaded)
         for (int c = 0; c < 3; ++c) (*row)[3 * i + c] = -stiffness(2, c);
     });
-    if (loaded) close_body_row(step, at, k, body++);
+    close_tool(step, at, k, filter);
   }
 }
 
 // A point inside a cell stiffens all pairs of its corners by the product of their weights: symmetric blocks,
 // so which node has the larger number does not matter. Cells of one colour share no node.
 void System::add_contact_in_cells(const StepData& step, const Position& at, Filter filter) {
-  for (int k = 0, body = 0; k < static_cast<int>(scene_.tools.size()); ++k) {
+  for (int k = 0; k < static_cast<int>(scene_.tools.size()); ++k) {
     const bool loaded = body_[k] >= 0;
+    const int body = body_[k] - 3 * scene_.blank.nodes();
     if (loaded) std::fill(body_row_[body].begin(), body_row_[body].end(), 0.0);
     for (const auto& colour : colours_)
       for_each(static_cast<int>(colour.size()), [&, k](int index) {
@@ -237,16 +245,63 @@ void System::add_contact_in_cells(const StepData& step, const Position& at, Filt
           }
         }
       });
-    if (loaded) close_body_row(step, at, k, body++);
+    close_tool(step, at, k, filter);
   }
 }
 
 // A loaded tool feels what all its contacts feel along z, its own mass and its spring.
-void System::close_body_row(const StepData& step, const Position& at, int k, int body) {
+void System::close_tool(const StepData& step, const Position& at, int k, Filter filter) {
+  if (body_[k] < 0) return;
   const Tool& tool = scene_.tools[k];
+  const int body = body_[k] - 3 * scene_.blank.nodes();
   double diagonal = tool.mass / (step.dt * step.dt) + drive_at(tool, at.x[body_[k]]).stiffness;
+  if (tool.tilt) return close_tilting(step, at, k, filter, diagonal);
   for (int i = 0; i < scene_.blank.nodes(); ++i) diagonal -= body_row_[body][3 * i + 2];
-  body_diagonal_[body] = diagonal;
+  body_column_[body][0] = diagonal;
+}
+
+// With ways w_j of the tool's points for each of its unknowns q_j, a point's friction knows x - sum w_j q_j,
+// its contact the distance of x and q.
+void System::close_tilting(const StepData& step, const Position& at, int k, Filter filter,
+                           double stiffness_along_z) {
+  const Tool& tool = scene_.tools[k];
+  const int body = body_[k] - 3 * scene_.blank.nodes();
+  const Pose pose = this->pose(step, at.x, k);
+  for (int u = 0; u < 3; ++u) std::fill(body_row_[body + u].begin(), body_row_[body + u].end(), 0.0);
+  Matrix3d own = Matrix3d::Zero();
+  for (int u = 0; u < 3; ++u)
+    own(u, u) = u == 0 ? stiffness_along_z
+                       : tool.mass / (step.dt * step.dt) + tilt_drive_at(tool, at.x[body_[k] + u]).stiffness;
+  for (int i = 0; i < contacts(); ++i) {
+    const auto& [d, direction, contact] = at.contacts[k][i];
+    const bool rubs = !at.friction.empty() && step.friction[k][i].load > 0.0;
+    if (contact.approach <= 0.0 && !rubs) continue;
+    const double area = contact_area(step, i);
+    const Eigen::Vector3d slope = slopes_at(*tool.tilt, pose, at_point(points_[i], at.x), direction);
+    Matrix3d with_point = area * contact.stiffness * direction * slope.transpose();
+    own += area * contact.stiffness * slope * slope.transpose();
+    if (filter == Filter::none && contact.pressure > 0.0) {
+      const TiltCurvature bent =
+          curvature_at(*tool.tilt, pose, at_point(points_[i], at.x), tool_contact(step, at.x, k, i).surface);
+      with_point -= area * contact.pressure * bent.with_point;
+      own -= area * contact.pressure * bent.own;
+    }
+    if (rubs) {
+      const Matrix3d drag = friction_stiffness(step, at, k, i, filter);
+      Matrix3d way;
+      const auto ways = ways_at(*tool.tilt, at_point(points_[i], step.start->x));
+      for (int u = 0; u < 3; ++u) way.col(u) = ways[u];
+      with_point -= drag * way;
+      own += way.transpose() * drag * way;
+    }
+    const ContactPoint& point = points_[i];
+    for (int a = 0; a < point.nodes; ++a)
+      for (int u = 0; u < 3; ++u)
+        for (int c = 0; c < 3; ++c)
+          body_row_[body + u][3 * point.node[a] + c] += point.weight[a] * with_point(c, u);
+  }
+  for (int u = 0; u < 3; ++u)
+    for (int r = u; r < 3; ++r) body_column_[body + u][r - u] = own(r, u);
 }
 
 // Inertia, stabilisation, bending and twist: multiples of the unit matrix in each block.
@@ -267,7 +322,7 @@ void System::begin_matrix(const StepData& step) {
 
 // The rows of loaded tools at the foot of each column, the shift, identity rows and columns of held unknowns.
 void System::finish_matrix(double shift) {
-  const int nodes = scene_.blank.nodes(), bodies = scene_.loaded_tools();
+  const int nodes = scene_.blank.nodes(), bodies = scene_.unknowns_of_tools();
   const auto& start = solver_->pattern().column_start;
   const auto& row = solver_->pattern().row;
   const bool some_held = !scene_.held.empty();
@@ -279,7 +334,10 @@ void System::finish_matrix(double shift) {
       if (scene_.held[j] || (row[k] < 3 * nodes && scene_.held[row[k]]))
         values_[k] = k == start[j] ? 1.0 : 0.0;
   });
-  for (int b = 0; b < bodies; ++b) values_[start[3 * nodes + b]] = body_diagonal_[b] + shift;
+  for (int b = 0; b < bodies; ++b) {
+    std::copy(body_column_[b].begin(), body_column_[b].end(), values_.begin() + start[3 * nodes + b]);
+    values_[start[3 * nodes + b]] += shift;
+  }
 }
 
 void System::assemble(const StepData& step, const Position& at, Filter filter, double shift) {

@@ -17,4 +17,9 @@ Drive drive_at(const Tool& tool, double u) {
   return {dead * u + spring.energy, dead + spring.force, spring.stiffness, spring.energy, spring.force};
 }
 
+Drive tilt_drive_at(const Tool& tool, double lift) {
+  const double energy = 0.5 * tool.stiffness * lift * lift, force = tool.stiffness * lift;
+  return {energy, force, tool.stiffness, energy, force};
+}
+
 }  // namespace heddle::macroscale

@@ -18,4 +18,7 @@ struct Drive {
 ///           positive (Motion::sprung) [m]
 Drive drive_at(const Tool& tool, double u);
 
+/// The same of a lift of a tilting tool: its springs alone, for its force and weight act at its pivot.
+Drive tilt_drive_at(const Tool& tool, double lift);
+
 }  // namespace heddle::macroscale

@@ -176,7 +176,7 @@ Problems check_punch_height(const StampingSpec& spec) {
 }
 
 Problems check_hold(const StampingSpec& spec) {
-  if (!spec.binder.file || binder_area(spec) > 0.0) return {};
+  if (!spec.binder.file || binder_face(spec).area > 0.0) return {};
   return {{"tools.binder.hold"_rule, "tools.binder", "", "has no flat lower face over the blank",
            "The binder presses by its lowest face, which must be level and reach over the blank's edge."}};
 }
@@ -230,21 +230,23 @@ Shape raised(Shape shape, double z) {
   return shape;
 }
 
-double binder_area(const StampingSpec& spec) {
+BinderFace binder_face(const StampingSpec& spec) {
   const Blank blank = turned(make_blank(outline_of(spec.blank), spec.blank.spacing, spec.blank.orientation),
                              spec.blank.turned);
   const Shape binder = touching(spec, Role::binder);
   const auto* ring = std::get_if<RingShape>(&binder);
   const double below = 1e-3;
-  double area = 0.0;
+  double area = 0.0, second_moment = 0.0;
   for (int i = 0; i < blank.nodes(); ++i) {
     const Vector3d& x = blank.reference[i];
     const bool under =
         ring ? x.head<2>().norm() >= ring->opening_radius + ring->fillet
              : std::abs(distance(binder, {x.x(), x.y(), -below}).distance - below) < flat_tolerance;
-    if (under) area += blank.node_area[i];
+    if (!under) continue;
+    area += blank.node_area[i];
+    second_moment += 0.5 * blank.node_area[i] * x.head<2>().squaredNorm();
   }
-  return area;
+  return {area, area > 0.0 ? std::sqrt(second_moment / area) : 0.0};
 }
 
 }  // namespace heddle::macroscale

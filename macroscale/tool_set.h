@@ -40,7 +40,11 @@ TouchingTools touching_tools(const StampingSpec& spec);
 /// The same shape moved up by z [m].
 Shape raised(Shape shape, double z);
 
-/// Area of the flat blank that lies under the flat face of the binder: where it presses [m^2].
-double binder_area(const StampingSpec& spec);
+/// What lies of the flat blank under the flat face of the binder: where it presses.
+struct BinderFace {
+  double area = 0.0;  ///< [m^2]
+  double arm = 0.0;   ///< radius of gyration, the mean of all level axes through the punch's [m]
+};
+BinderFace binder_face(const StampingSpec& spec);
 
 }  // namespace heddle::macroscale

@@ -155,6 +155,10 @@ bool has_unknown(const Tool& tool) {
   return tool.motion == Motion::loaded || tool.motion == Motion::sprung;
 }
 
+int unknowns_of(const Tool& tool) {
+  return has_unknown(tool) ? (tool.tilt ? 3 : 1) : 0;
+}
+
 Vector3d place_on(const CurvedPlateShape& plate, double s) {
   const double level = plate.level;
   const double radius = plate.path.radius, angle = plate.path.angle, half = radius * angle;

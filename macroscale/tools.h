@@ -103,6 +103,14 @@ struct Turn {
   Eigen::Vector3d pivot = Eigen::Vector3d::Zero();  ///< [m]
 };
 
+/// A tool that tilts as the fabric below it asks: free to turn about level axes through a point of its own.
+/// Its unknowns are what a point at `arm` is lifted, and its mass and springs are spread so that there they
+/// count in full: `arm` is their radius of gyration.
+struct Tilt {
+  Eigen::Vector3d pivot = Eigen::Vector3d::Zero();  ///< [m]
+  double arm = 1.0;                                 ///< [m]
+};
+
 struct Tool {
   Role role = Role::die;
   Shape shape;
@@ -113,11 +121,13 @@ struct Tool {
   double stiffness = 0.0;  ///< of its spring; 0 = none (loaded) [N/m]
   double yield = 0.0;      ///< force at which the spring of a sprung tool yields to a push; 0 = never [N]
   std::optional<Turn> turn = {};
+  std::optional<Tilt> tilt = {};  ///< for Motion::loaded; absent: stays level
   /// Its own law and effects, in place of those of the scene; absent: the scene's.
   std::optional<friction::Model> friction = {};
 };
 
-bool has_unknown(const Tool& tool);  ///< loaded and sprung tools have one of their own
+bool has_unknown(const Tool& tool);  ///< loaded and sprung tools have one of their own along z
+int unknowns_of(const Tool& tool);   ///< 0 or 1 along z, 2 more where it tilts
 
 /// Distance to the tool where it stands before it moves.
 Distance distance(const Tool& tool, const Eigen::Vector3d& x);

@@ -300,6 +300,7 @@ void take_control(const Settings& settings, macroscale::BinderSpec& binder) {
   if (settings.is("tools.binder.control", "gap")) binder.control = macroscale::BinderControl::gap;
   take(settings, "tools.binder.gap", binder.gap);
   take(settings, "tools.binder.stiffness", binder.stiffness);
+  binder.free_tilt = settings.is("tools.binder.tilt", "free");
   take(settings, "tools.binder.sectors", binder.sectors);
 }
 

@@ -97,6 +97,7 @@ constexpr Column<History> history_columns[] = {
     // A share of the friction columns, not a column of the ledger: it stands behind them and is not summed.
     {"friction_work_outside_calibration_J", [](const History& r) { return r.friction_work_outside; }},
     {"punch_deflection_mm", [](const History& r) { return 1e3 * r.punch_deflection; }},
+    {"binder_tilt_deg", [](const History& r) { return degrees * r.binder_tilt; }},
 };
 
 // Of a run with temperatures; behind all others.

@@ -228,7 +228,7 @@ std::string blank_in_words(const macroscale::BlankSpec& blank) {
 }
 
 double mean_binder_pressure(const macroscale::StampingSpec& spec) {
-  return spec.process.applied_binder_force() / macroscale::binder_area(spec);
+  return spec.process.applied_binder_force() / macroscale::binder_face(spec).area;
 }
 
 }  // namespace heddle::pipeline

@@ -91,7 +91,7 @@ std::array<thermal::Face, 2> faces_at(const System& system, const State& state, 
   std::array<double, 2> conductance{}, flow{};
   for (int k = 0; k < static_cast<int>(scene.tools.size()); ++k) {
     const NormalContact contact =
-        system.contact_at(state.node(node), k, system.tool_position(state, k)).normal;
+        system.contact_at(state.node(node), k, system.pose(state, k)).normal;
     if (contact.pressure <= 0.0) continue;
     const Side side = side_of(scene.tools[k].role);
     const double h = spec.contact.at(contact.pressure).value;

@@ -144,7 +144,7 @@ std::vector<float> values_of(const LevelSet& set, const std::array<int, 3>& bloc
 }  // namespace
 
 TEST_CASE("two sheets that face each other share the band between them by distance",
-          "[core][triangle_walk][level_set]") {
+          "[core][triangle_walk][level_set][long]") {
   const TriangleMesh mesh = slotted_block(GENERATE(0.5e-3, 0.2e-3));
   const double voxel = 0.25e-3;
   const LevelSet set = level_set_from_mesh(mesh, voxel, 8.0);

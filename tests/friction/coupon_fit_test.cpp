@@ -275,7 +275,7 @@ TEST_CASE("laws and effects with a memory are fitted to stretches of a pull", "[
 }
 
 TEST_CASE("95 % intervals hold the truth in 90 to 98 % of 200 campaigns",
-          "[friction][calibration][statistics]") {
+          "[friction][calibration][statistics][long]") {
   CouponFitSpec spec = wish(three);
   spec.noise.day = 0.0;
   const auto check_coverage = [&](const Campaign& campaign) {

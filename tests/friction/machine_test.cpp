@@ -166,7 +166,7 @@ TEST_CASE("under the cam pull and normal force fall together and their ratio is 
 }
 
 TEST_CASE("a law that falls with speed makes the machine stick and slip, the longer the softer it is",
-          "[friction][rig]") {
+          "[friction][rig][long]") {
   Model model = coulomb();
   model.effects.stick_slip = StickSlip{.amplitude = 0.4, .speed = 5e-3};
   const auto teeth = [&](double stiffness) {

@@ -57,7 +57,8 @@ VectorXd moved(const Scene& scene, const std::function<Vector3d(const Vector3d&)
 
 }  // namespace
 
-TEST_CASE("a trimmed blank holds the area of its outline, whatever shape and angle", "[macroscale][blank]") {
+TEST_CASE("a trimmed blank holds the area of its outline, whatever shape and angle",
+          "[macroscale][blank][long]") {
   const double angle = GENERATE(0.0, 17.0, 45.0, 90.0, -130.0) * degree;
   const double spacing = GENERATE(4.5e-3, 11e-3);
   const std::vector<Outline> outlines{rectangle({0.32, 0.3}), circle(0.16, 1e-6), hard_outline()};
@@ -384,7 +385,8 @@ TEST_CASE("V13: a 90/0 blank is the 0/90 blank turned", "[macroscale][blank][ver
       a, b, [](std::size_t n) { return n; }, quarter_turn, 1.0);
 }
 
-TEST_CASE("V13: a -45 blank is the mirror image of the +45 blank", "[macroscale][blank][verification]") {
+TEST_CASE("V13: a -45 blank is the mirror image of the +45 blank",
+          "[macroscale][blank][verification][long]") {
   const auto law = GENERATE(false, true) ? coulomb_along_the_trellis() : coulomb();
   StampingSpec spec = small_case(20e-3);
   spec.blank.holes = {{{0.12, 0.05}, 0.012}};

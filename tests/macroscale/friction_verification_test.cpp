@@ -203,7 +203,7 @@ TEST_CASE("V15: a strip drawn from under the binder carries twice mu times the b
 }
 
 TEST_CASE("V15: over the die's shoulder that tension grows by exp(mu pi / 2)",
-          "[macroscale][verification][friction]") {
+          "[macroscale][verification][friction][long]") {
   const double mu = 0.3;
   const auto sites = GENERATE(ContactSites::nodes, ContactSites::gauss);
   // An eighth of the shoulder's radius.

@@ -108,7 +108,7 @@ TEST_CASE("a stack and its mirror image need the same force", "[macroscale][plie
   CHECK(std::abs(force({30.0, 0.0}) / one - 1.0) > 1e-3);  // another stack needs another force
 }
 
-TEST_CASE("two plies that slip freely take twice the force of one", "[macroscale][plies][stamping]") {
+TEST_CASE("two plies that slip freely take twice the force of one", "[macroscale][plies][stamping][long]") {
   const auto force = [](int plies) {
     StampingSpec spec = small_case(std::vector<double>(static_cast<std::size_t>(plies), 0.0));
     spec.blank.spacing = 25e-3;

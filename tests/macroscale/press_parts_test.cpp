@@ -51,7 +51,7 @@ Supports supports(const System& system, const State& state) {
   for (std::size_t k = 0; k < system.scene().tools.size(); ++k)
     for (int i = 0; i < system.contacts(); ++i) {
       const auto [d, contact] = system.contact_at(state.node(i), static_cast<int>(k),
-                                                  system.tool_position(state, static_cast<int>(k)));
+                                                  system.pose(state, static_cast<int>(k)));
       const double force = system.contact_area(now, i) * contact.pressure * d.normal.z();
       (system.scene().tools[k].role == Role::binder ? sum.binder : sum.die) += force;
     }

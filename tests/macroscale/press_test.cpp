@@ -187,7 +187,7 @@ TEST_CASE("a binder held at a gap stays there, and presses the flat fabric as it
   const double pressure = fabric.compaction.curves().front()(approach);
   for (int i = 0; i < scene.blank.nodes(); ++i)
     if (scene.blank.reference[i].head<2>().norm() > 0.13)  // clear of the edge, where the fabric bends
-      CHECK(system.contact_at(state.node(i), 2, 0.0).normal.pressure == Approx(pressure).epsilon(0.01));
+      CHECK(system.contact_at(state.node(i), 2, {}).normal.pressure == Approx(pressure).epsilon(0.01));
 }
 
 TEST_CASE("each sector of a split binder carries its own share", "[macroscale][press][binder]") {
@@ -197,7 +197,7 @@ TEST_CASE("each sector of a split binder carries its own share", "[macroscale][p
   const auto fabric = make_fabric({});
   const heddle::friction::Model friction = coulomb();
   Scene scene = stamping_scene(spec, fabric, friction);
-  REQUIRE(scene.loaded_tools() == spec.binder.sectors);
+  REQUIRE(scene.unknowns_of_tools() == spec.binder.sectors);
   System system(scene);
   State state = initial_state(scene);
   StepData step;
@@ -205,7 +205,7 @@ TEST_CASE("each sector of a split binder carries its own share", "[macroscale][p
   for (int k = 2; k < 2 + spec.binder.sectors; ++k) {
     double force = 0.0;
     for (int i = 0; i < scene.blank.nodes(); ++i) {
-      const auto [d, contact] = system.contact_at(state.node(i), k, state.tool_z[k]);
+      const auto [d, contact] = system.contact_at(state.node(i), k, {state.tool_z[k]});
       force -= scene.blank.node_area[i] * contact.pressure * d.normal.z();
     }
     CHECK(force == Approx(650.0 / spec.binder.sectors).epsilon(2e-3));  // what inertia is left of the closing

@@ -26,6 +26,7 @@ struct RandomStamping {
   double speed = 0.0;           ///< of the punch [m/s]
   double tension_factor = 1.0;  ///< on the tension energy of Table 1's weave [-]
   double shear_factor = 1.0;    ///< on its shear resistance, rate-dependent part included [-]
+  bool thermal = false;         ///< whether temperatures run through the thickness
 };
 
 /// Draws in [0, 1) from a generator whose output the standard fixes; its distributions are not fixed, so they
@@ -78,7 +79,8 @@ inline friction::Law law_of_kind(int kind, double coefficient) {
 
 /// Case `number` of the robustness run: mu 0 to 0.6 in every law, binder 20 N to 2.28e5 N on the 320 mm blank
 /// (2.9 MPa; smaller blanks at the same pressure), punch 0.1 to 330 mm/s, tows at 0 to 90 deg, spacing 3 to
-/// 12 mm, tension and shear stiffness times 0.1 to 10, at most 2000 nodes. Tools shrink with the blank.
+/// 12 mm, tension and shear stiffness times 0.1 to 10, at most 2000 nodes. Tools shrink with the blank. Half
+/// of those whose stroke lasts under 10 s have temperatures, and half of these a binder that is free to tilt.
 /// @param fabric  what the factors multiply
 inline RandomStamping random_stamping(int number, const mesoscale::FabricProperties& fabric) {
   constexpr double full_size = 0.32, crush_pressure_force = 2.28e5;
@@ -132,6 +134,12 @@ inline RandomStamping random_stamping(int number, const mesoscale::FabricPropert
   for (double& s : shear) s *= c.shear_factor;
   c.fabric.shear_stress = Curve(fabric.shear_stress.x(), std::move(shear));
   c.fabric.shear_rate.consistency *= c.shear_factor;
+
+  c.thermal = process.time < 10.0 && draw.share() < 0.5;
+  if (c.thermal) {
+    c.spec.thermal.emplace();
+    c.spec.binder.free_tilt = draw.share() < 0.5;
+  }
   return c;
 }
 

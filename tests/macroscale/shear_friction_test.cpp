@@ -339,7 +339,7 @@ Formed form(const StampingSpec& spec, const heddle::mesoscale::FabricProperties&
 TEST_CASE(
     "friction between tows takes its share of the work of a stamping and leaves its force where little turns "
     "back",
-    "[macroscale][hysteresis][stamping]") {
+    "[macroscale][hysteresis][stamping][long]") {
   const auto fabric = locking_fabric();
   double force = 0.0;
   for (const double share : {0.0, 0.45}) {

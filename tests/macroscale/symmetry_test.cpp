@@ -126,7 +126,7 @@ void check_whole(const StampingResult& whole, const StampingResult& piece, doubl
 }  // namespace
 
 TEST_CASE("V13: halves and quarter give forces, energies, shape and draw-in of the whole",
-          "[macroscale][symmetry][verification]") {
+          "[macroscale][symmetry][verification][long]") {
   StampingSpec spec = coarse_stamping(8);
   spec.blank.spacing = 20e-3;
   using heddle::friction::Orientation;

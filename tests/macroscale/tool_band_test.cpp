@@ -163,7 +163,7 @@ TEST_CASE("the band of a punch's mesh agrees with the hemisphere it stands for u
 }
 
 TEST_CASE("the band of a die's mesh agrees with the ring with fillet it stands for up to its facets",
-          "[macroscale][tool_band]") {
+          "[macroscale][tool_band][long]") {
   // 3 degrees on the fillet, 1.5 round the opening: 2.1 um outside and up to 2.4 um inside.
   const TriangleMesh mesh = test::die_mesh(22e-3, 6e-3, 45e-3, 15e-3, 30, 240);
   const ToolBand band = tool_band(mesh, {.voxel = 0.5e-3, .half_width = 3e-3}, "tools.die");
@@ -381,7 +381,8 @@ TEST_CASE("pressed beyond the band, the contact energy is not finite, so no line
   CHECK_THAT(refused.reason, Catch::Contains("node 0 at (-10, -10, 0) mm is deeper in the punch"));
 }
 
-TEST_CASE("a band of a region is the whole band there, and an error elsewhere", "[macroscale][tool_band]") {
+TEST_CASE("a band of a region is the whole band there, and an error elsewhere",
+          "[macroscale][tool_band][long]") {
   const TriangleMesh punch = test::punch_mesh(20e-3, 60e-3, 30);
   ToolBandSpec spec{.voxel = 0.5e-3, .half_width = 3e-3};
   const ToolBand whole = tool_band(punch, spec, "tools.punch");

@@ -220,7 +220,7 @@ TEST_CASE("a tool of 200 thousand triangles loads", "[macroscale][tool_file][slo
 }
 
 TEST_CASE("a die drawn as a sheet is the die that it bounds, whichever way its normals were drawn",
-          "[macroscale][tool_file]") {
+          "[macroscale][tool_file][long]") {
   const Folder folder;
   Meridian profile{{0.2, 0.0}};  // from the rim inwards, over the fillet and down
   add_line(profile, {0.0956, 0.0}, 29);

@@ -231,7 +231,7 @@ std::string line_of(const Wrinkled& w) {
 }  // namespace
 
 TEST_CASE("under 20 N of binder a soft sheet wrinkles, and the stamping comes to its end by inertia alone",
-          "[macroscale][wrinkling]") {
+          "[macroscale][wrinkling][long]") {
   const auto [orientation, coefficient] = GENERATE(std::pair{30.0, 0.3}, std::pair{45.0, 0.0});
   CAPTURE(orientation, coefficient);
   const Wrinkled found =

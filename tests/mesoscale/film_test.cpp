@@ -146,7 +146,7 @@ TEST_CASE("sliding by 90 degrees more feels the same in a balanced weave that is
 }
 
 TEST_CASE("direction of sliding changes friction by less than 2 percent, unless the fabric is sheared",
-          "[film][paper]") {
+          "[film][paper][long]") {
   // The paper saw no effect of orientation. At 0 shear it follows from the weave; at 30 degrees it would not.
   // A quarter turn is symmetric (above), and so is the mirror: 0 to 45 degrees stand for all.
   const auto range = [](double shear, const std::vector<double>& angles) {

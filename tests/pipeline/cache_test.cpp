@@ -46,7 +46,7 @@ std::string other_value(const pipeline::Key& key, const pipeline::Settings& sett
 TEST_CASE(
     "a changed weave runs every stage again, a changed binder force the stamping alone, a touched file "
     "nothing",
-    "[pipeline][cache]") {
+    "[pipeline][cache][long]") {
   const Scratch scratch;
   warm(scratch / "cache");
   // A copy of the shipped files, which the test may touch.
@@ -94,7 +94,7 @@ TEST_CASE("stages out of the cache give the same bytes as stages that are run", 
   CHECK(first_difference(plain, contents(scratch / "take")) == "");
 }
 
-TEST_CASE("a quarter out of the cache shows the whole blank again", "[pipeline][cache]") {
+TEST_CASE("a quarter out of the cache shows the whole blank again", "[pipeline][cache][long]") {
   const Scratch scratch;
   const auto settings = with(small_stamping(), "blank.symmetry=quarter");
   for (const char* name : {"fill", "take"})

@@ -81,7 +81,7 @@ std::string effect_keys(double amplitude) {
 }  // namespace
 
 TEST_CASE("every friction effect is off at its off value to the byte, and linear when tiny",
-          "[pipeline][effect]") {
+          "[pipeline][effect][long]") {
   const Run without = run("");
   const auto usual = test::every_effect();
   std::size_t at = 0;
@@ -136,7 +136,7 @@ TEST_CASE(
 }
 
 TEST_CASE("every effect of forming is off at its off value to the byte, and linear when tiny",
-          "[pipeline][effect]") {
+          "[pipeline][effect][long]") {
   struct Effect {
     const char* id;
     const char* amplitude;
@@ -195,7 +195,7 @@ TEST_CASE("friction between tows is off at a share of 0 to the byte, and linear 
 }
 
 TEST_CASE("effects that draw on the film's conduction are off to the byte and linear when tiny as well",
-          "[pipeline][effect]") {
+          "[pipeline][effect][long]") {
   const std::vector<std::string> conduction{"friction.film_temperature=conduction"};
   const Run without = run("");
   CHECK((run("", conduction).history == without.history));

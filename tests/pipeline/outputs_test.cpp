@@ -103,7 +103,7 @@ TEST_CASE("the history table has the columns other programs rely on", "[outputs]
       "dissipation_numerical_J", "ledger_residual_J",
       // Not of the ledger.
       "force_balance_N", "folded_nodes", "near_nodes", "self_crossings",
-      "friction_work_outside_calibration_J", "punch_deflection_mm"};
+      "friction_work_outside_calibration_J", "punch_deflection_mm", "binder_tilt_deg"};
   CHECK(split(lines[0], ',') == names);
   for (const std::string& line : lines) CHECK(split(line, ',').size() == names.size());
 }
@@ -142,6 +142,7 @@ TEST_CASE("every history column holds its own quantity in its own unit", "[outpu
     row.*member = static_cast<int>(101 + column++);
   row.friction_work_outside = static_cast<double>(101 + column++);
   row.punch_deflection = 1e-3 * static_cast<double>(101 + column++);
+  row.binder_tilt = std::acos(-1.0) / 180.0 * static_cast<double>(101 + column++);
   const std::vector<std::string> cells = split(split(history_csv(std::vector{row}), '\n')[1], ',');
   REQUIRE(cells.size() == column);
   CHECK(cells[0] == "0.43");

@@ -270,8 +270,7 @@ TEST_CASE("going on with other inputs is refused and names what changed, and a d
 TEST_CASE("a run that fails keeps its state, its worst nodes, its energies and a picture of the last iterate",
           "[pipeline][resume]") {
   const Scratch scratch;
-  // Hardly any fabric is left after 10 MN of binder force.
-  auto options = warm_options(scratch, with(small_stamping(), "process.binder_force=1e7 N"));
+  auto options = warm_options(scratch, with(small_stamping(), softest_fabric(scratch / "softest.csv")));
   REQUIRE(pipeline::run_case(options) == pipeline::exit_failed);
   const std::string summary = pipeline::read_file(scratch / "run/summary.json");
   for (const char* key : {"\"failure\": {", "\"reason\"", "\"advice\"", "\"worst\"", "\"residual_N\"",

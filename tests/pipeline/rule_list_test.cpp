@@ -507,7 +507,7 @@ bool names_rule(const std::string& text, const std::string& rule) {
 }  // namespace
 
 TEST_CASE("every rule of the source is met by a small bad file, or by the one test that can break it",
-          "[pipeline][config][rules]") {
+          "[pipeline][config][rules][long]") {
   const RuleNames rules = rules_of_the_program();
   for (const std::string& fault : rules.faults) FAIL_CHECK(fault);
   CHECK(rules.places.size() > 100);
@@ -528,7 +528,7 @@ TEST_CASE("every rule of the source is met by a small bad file, or by the one te
 }
 
 TEST_CASE("a rule without a bad file, and a name that cannot be read, are seen",
-          "[pipeline][config][rules]") {
+          "[pipeline][config][rules][long]") {
   const std::string text =
       "// \"in.a_comment\"_rule\n/* \"in.another\"_rule */ char c = '\"'; int n = 1'000;\n"
       "refuse(\"made.up\"_rule, \"a \\\" b\");\nrefuse( \"*.made_up\"_family.of(key));\n";

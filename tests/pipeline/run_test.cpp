@@ -125,7 +125,7 @@ void check_rig(const fs::path& folder) {
 
 }  // namespace
 
-TEST_CASE("the shipped friction test and unit cell run", "[pipeline][run]") {
+TEST_CASE("the shipped friction test and unit cell run", "[pipeline][run][long]") {
   const Scratch scratch;
   // Its finite elements are tested where they live; here one pull of each kind is enough.
   const auto friction =
@@ -193,7 +193,7 @@ TEST_CASE("what only a command can break is refused under its rule", "[pipeline]
 }
 
 TEST_CASE("an effect at its off value restores the baseline byte for byte, and acts linearly when small",
-          "[pipeline][run][effect]") {
+          "[pipeline][run][effect][long]") {
   const Scratch scratch;
   const auto base = with(small, "process.tool_temperature=140 degC");
   const auto history = [&](const std::string& name, const std::string& effects) {
@@ -218,7 +218,7 @@ TEST_CASE("an effect at its off value restores the baseline byte for byte, and a
 }
 
 TEST_CASE("the weave acts on friction: a wider gap lowers the contact area, mu and the punch force",
-          "[pipeline][run]") {
+          "[pipeline][run][long]") {
   const Scratch scratch;
   // To the full stroke: early on the punch force is mostly tow straightening, which a wider gap changes as
   // well.
@@ -278,7 +278,7 @@ TEST_CASE(
 }
 
 TEST_CASE("a stamping says what its grid leaves, runs the companion once, and is the same without it",
-          "[pipeline][run][grid_error]") {
+          "[pipeline][run][grid_error][long]") {
   const Scratch scratch;
   const std::vector<std::string> fine = {"blank.spacing=16 mm", "process.steps=8",
                                          "process.punch={stroke: 30 mm, time: 0.18 s}", tools_by_shape};
@@ -322,7 +322,7 @@ TEST_CASE("a stamping says what its grid leaves, runs the companion once, and is
 }
 
 TEST_CASE("a blank drawn as DXF stamps as the same blank written as a circle with a hole",
-          "[pipeline][run][tools]") {
+          "[pipeline][run][tools][long]") {
   const Scratch scratch;
   std::ofstream(scratch / "blank.dxf") << "  0\nSECTION\n  2\nHEADER\n  9\n$INSUNITS\n 70\n4\n  0\nENDSEC\n"
                                           "  0\nSECTION\n  2\nENTITIES\n"
@@ -394,7 +394,7 @@ TEST_CASE("the orientation study stamps each blank, pulls each sample and report
 }
 
 TEST_CASE("tools from the shipped STEP files stamp the same part as the shapes they were drawn from",
-          "[pipeline][run][tools]") {
+          "[pipeline][run][tools][long]") {
   const Scratch scratch;
   std::vector<std::string> settings = small;
   const double shapes = stamped(scratch, "shapes", settings, "peak_punch_force_N");

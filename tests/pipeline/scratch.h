@@ -3,6 +3,7 @@
 #include <unistd.h>
 
 #include <filesystem>
+#include <fstream>
 #include <map>
 #include <string>
 #include <vector>
@@ -46,6 +47,12 @@ inline std::vector<std::string> small_stamping() {
 inline std::vector<std::string> with(std::vector<std::string> base, const std::string& more) {
   base.push_back(more);
   return base;
+}
+
+/// A fabric so soft that the shipped binder presses through it while it closes.
+inline std::string softest_fabric(const fs::path& file) {
+  std::ofstream(file) << "thickness_mm,pressure_kPa\n1.5,0\n1,1\n0.5,2\n";
+  return "fabric.compaction={file: " + file.string() + "}";
 }
 
 inline pipeline::RunOptions options_for(const fs::path& output, std::vector<std::string> settings) {

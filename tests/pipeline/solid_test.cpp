@@ -103,7 +103,7 @@ TEST_CASE("a weave with solid writes its stiffness, from the cache to the same b
 }
 
 TEST_CASE("two load cases at once give the file of six to six digits, of a weave and of voxels",
-          "[pipeline][solid]") {
+          "[pipeline][solid][long]") {
   const Scratch scratch;
   const auto stiffness = [&](const char* config, const char* name, std::vector<std::string> settings) {
     REQUIRE(pipeline::weave_case(options_for(config, scratch.path / name, std::move(settings))) == 0);
@@ -136,7 +136,7 @@ TEST_CASE("a weave without solid writes no stiffness and says nothing of it", "[
         std::string::npos);
 }
 
-TEST_CASE("a voxel file is homogenised as a stack and as a plate", "[pipeline][solid]") {
+TEST_CASE("a voxel file is homogenised as a stack and as a plate", "[pipeline][solid][long]") {
   const Scratch scratch;
   CHECK(pipeline::weave_case(options_for("voxel_cell.yaml", scratch.path / "stack", {})) == 0);
   const auto stack = nlohmann::json::parse(read_text_file(scratch.path / "stack/mesoscale/stiffness.json"));

@@ -98,7 +98,7 @@ TEST_CASE("the line through peak forces is that of the points, and says how far 
 }
 
 TEST_CASE("a study of stampings runs every model at every speed once, and again out of what it left",
-          "[pipeline][study]") {
+          "[pipeline][study][long]") {
   const Scratch scratch;
   auto options = small_study(scratch / "study", ", models: ['rate-free: fabric.shear_rate=off']");
   options.cache = scratch / "cache";

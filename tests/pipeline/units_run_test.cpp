@@ -23,7 +23,7 @@ pipeline::Case read(const char* name, const std::vector<std::string>& settings =
 }  // namespace
 
 TEST_CASE("a case in millimetres, newtons and megapascals gives the bytes of the same case in SI",
-          "[pipeline][run][units]") {
+          "[pipeline][run][units][long]") {
   CHECK(read_text_file(folder / "millimetres.yaml") != read_text_file(folder / "metres.yaml"));
   const std::string resolved = pipeline::resolved_yaml(read("millimetres.yaml").settings);
   CHECK(resolved == pipeline::resolved_yaml(read("metres.yaml").settings));

@@ -72,7 +72,8 @@ TEST_CASE("tows that overlap are stated in summary and report, with depth and vo
   CHECK(summary["resolved"].get<std::string>().find("section: ellipse") != std::string::npos);
 }
 
-TEST_CASE("a stack of plies is stated in summary, table, report and stiffness", "[pipeline][weaves][stack]") {
+TEST_CASE("a stack of plies is stated in summary, table, report and stiffness",
+          "[pipeline][weaves][stack][long]") {
   const auto summary = summary_of(folder / "stack.yaml", {"solid={per_pitch: 8, layers: 6}"});
   CHECK(summary["stack"]["plies"] == 2);
   CHECK(summary["stack"]["thickness_mm"].get<double>() == Approx(2.5152).epsilon(1e-4));
@@ -92,7 +93,7 @@ TEST_CASE("a stack of plies is stated in summary, table, report and stiffness", 
 }
 
 TEST_CASE("the compacted state goes from a file to the summary, by thickness and by pressure",
-          "[pipeline][weaves][state]") {
+          "[pipeline][weaves][state][long]") {
   const fs::path file = fs::path(heddle::test::source_dir) / "configs/unit_cell.yaml";
   const auto thin = summary_of(file, {"cell={state: compacted, thickness: 0.8 mm}"});
   CHECK(thin["thickness_mm"].get<double>() == Approx(0.8));

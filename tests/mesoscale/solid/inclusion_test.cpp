@@ -128,7 +128,8 @@ TEST_CASE("a square array of fibres lies between the bounds of Hill and Hashin",
   CHECK(c(3, 3) == Approx(c(4, 4)).epsilon(1e-6));
 }
 
-TEST_CASE("mixed voxels bring the sheet of Table 1 within 0.3 % on 64 x 64 x 32", "[solid][convergence]") {
+TEST_CASE("mixed voxels bring the sheet of Table 1 within 0.3 % on 64 x 64 x 32",
+          "[solid][convergence][long]") {
   // Plain voxels up to 256 x 256 x 128 tend to 13.50 GPa and 50.97 N mm (benchmark_solid 256). Two errors of
   // mixed voxels run against each other: Ritz's, from above, falls fast; the layers in a voxel are too soft,
   // in proportion to it.

@@ -122,7 +122,7 @@ TEST_CASE("layers on an oblique lattice are a laminate across the true normal", 
   CHECK(gap(solved(cell), layered({0.5, 0.5}, c, normal)) < 1e-8);
 }
 
-TEST_CASE("a voxel woven cell has the stiffness that FANS gives it", "[solid][periodic][reference]") {
+TEST_CASE("a voxel woven cell has the stiffness that FANS gives it", "[solid][periodic][reference][long]") {
   const std::filesystem::path data = std::filesystem::path(source_dir) / "tests/mesoscale/data";
   VoxelFileSpec spec{data / "weave_64.raw", {64, 64, 64},    {10.78e-3, 10.78e-3, 1.65e-3},
                      AxisOrder::x_fastest,  Faces::periodic, {}};

@@ -36,7 +36,8 @@ constexpr std::array<int, 6> turned{1, 0, 2, 4, 3, 5};
 
 }  // namespace
 
-TEST_CASE("the solid of random weaves lies between the bounds of Reuss and Voigt", "[solid][weave][bound]") {
+TEST_CASE("the solid of random weaves lies between the bounds of Reuss and Voigt",
+          "[solid][weave][bound][long]") {
   std::mt19937 random(7);
   for (int k = 0; k < 8; ++k) {
     const WeaveSpec weave = heddle::test::random_weave(random);
@@ -63,7 +64,7 @@ TEST_CASE("warp and weft exchanged, the solid is turned", "[solid][weave]") {
   CHECK(a.balance.empty());
 }
 
-TEST_CASE("weaves whose warp and weft can be exchanged make balanced solids", "[solid][weave]") {
+TEST_CASE("weaves whose warp and weft can be exchanged make balanced solids", "[solid][weave][long]") {
   const std::string pattern = GENERATE("twill 2/2", "twill 2/1", "satin 5/2", "crowfoot");
   CAPTURE(pattern);
   // Where both tows share a voxel the sampler rounds the warp first: 6 x 6 x 5 voxels a pitch are off by more

@@ -221,7 +221,7 @@ TEST_CASE(
 }
 
 TEST_CASE("twenty random weaves of hybrid tows: slim halves stay apart, mass closed, laws finite",
-          "[weave][hybrid][bound]") {
+          "[weave][hybrid][bound][long]") {
   check_hybrids(20, 64);
 }
 

@@ -83,7 +83,8 @@ TEST_CASE(
   }
 }
 
-TEST_CASE("where nothing is hidden nothing is named, whatever the seed of the noise", "[discover][run]") {
+TEST_CASE("where nothing is hidden nothing is named, whatever the seed of the noise",
+          "[discover][run][long]") {
   const test::Scratch scratch;
   int gaps = 0;
   for (const std::uint64_t seed : {2, 3, 4, 5, 6, 7}) {
