@@ -1,7 +1,5 @@
 #include "macroscale/tool_pose.h"
 
-#include <cmath>
-
 #include <Eigen/Geometry>
 
 namespace heddle::macroscale {
