@@ -36,4 +36,14 @@ inline Kept run_and_keep(const macroscale::StampingSpec& spec, const mesoscale::
   return kept;
 }
 
+/// The same stamping, gone on with from what one of its checkpoints kept.
+inline macroscale::StampingResult go_on(const std::string& bytes, const macroscale::StampingSpec& spec,
+                                        const mesoscale::FabricProperties& fabric,
+                                        const friction::Model& friction) {
+  const macroscale::StampingCheckpoint checkpoint = from(bytes);
+  macroscale::StampingControl control;
+  control.resume_from = &checkpoint;
+  return run_stamping(spec, fabric, friction, control);
+}
+
 }  // namespace heddle::test

@@ -292,19 +292,12 @@ TEST_CASE("a run that was kept before its release goes on to the same released b
   StampingSpec spec = coarse_stamping(10);
   spec.process.steps = 4;
   spec.process.press.release = true;
-  std::vector<StampingCheckpoint> kept;
-  StampingControl control;
-  control.keep = [&](const StampingCheckpoint& c, bool) {
-    kept.push_back(heddle::test::from(heddle::test::bytes_of(c)));
-  };
   const auto fabric = make_fabric({});
-  const auto whole = run_stamping(spec, fabric, coulomb(), control);
+  const auto [kept, whole] = heddle::test::run_and_keep(spec, fabric, coulomb());
   REQUIRE(kept.size() == 6);
   for (const std::size_t from : {4u, 5u}) {
-    CHECK(kept[from].release.has_value() == (from == 5));
-    StampingControl resumed;
-    resumed.resume_from = &kept[from];
-    const auto again = run_stamping(spec, fabric, coulomb(), resumed);
+    CHECK(heddle::test::from(kept[from]).release.has_value() == (from == 5));
+    const auto again = heddle::test::go_on(kept[from], spec, fabric, coulomb());
     CHECK(again.final_state.position == whole.final_state.position);
     CHECK(again.summary.release->row.energy_shear == whole.summary.release->row.energy_shear);
   }

@@ -236,19 +236,12 @@ TEST_CASE("a stamping with a tilting binder goes on from a checkpoint to the sam
   spec.process.press.release = true;
   spec.binder.stiffness = 1e6;
   spec.contact_sites = GENERATE(ContactSites::nodes, ContactSites::gauss);
-  std::vector<StampingCheckpoint> kept;
-  StampingControl control;
-  control.keep = [&](const StampingCheckpoint& c, bool) {
-    kept.push_back(heddle::test::from(heddle::test::bytes_of(c)));
-  };
   const auto fabric = make_fabric({});
-  const auto whole = run_stamping(spec, fabric, coulomb(), control);
+  const auto [kept, whole] = heddle::test::run_and_keep(spec, fabric, coulomb());
   check_books(whole);
   REQUIRE(whole.summary.release);
   CHECK(std::abs(whole.summary.release->row.ledger_residual) < 1e-3 * whole.history.back().work_punch);
-  StampingControl resumed;
-  resumed.resume_from = &kept[2];
-  const auto again = run_stamping(spec, fabric, coulomb(), resumed);
+  const auto again = heddle::test::go_on(kept[2], spec, fabric, coulomb());
   CHECK(again.final_state.position == whole.final_state.position);
   CHECK(whole.history.back().binder_tilt > 1e-8);
   CHECK(again.history.back().binder_tilt == whole.history.back().binder_tilt);
