@@ -2,6 +2,7 @@
 #include <catch2/catch.hpp>
 
 #include <cmath>
+#include <numbers>
 #include <utility>
 
 #include <Eigen/Dense>
@@ -141,6 +142,20 @@ TEST_CASE("a tool that stands level is where it stood without a tilt", "[macrosc
   };
   CHECK(gap(0.12, 0.01) - gap(0.12, 0.0) == Approx(0.12 * std::sin(0.01)).epsilon(1e-3));
   CHECK(gap(-0.12, 0.01) - gap(-0.12, 0.0) == Approx(-0.12 * std::sin(0.01)).epsilon(1e-3));
+}
+
+TEST_CASE("the tilt's arm is the radius of gyration of what the binder presses",
+          "[macroscale][press][tilt]") {
+  StampingSpec spec;
+  spec.blank.spacing = 2e-3;
+  spec.binder.free_tilt = true;
+  const double side = spec.blank.size[0], hole = spec.binder.inner_radius + spec.binder.edge_fillet;
+  const double area = side * side - std::numbers::pi * hole * hole;
+  const double polar = std::pow(side, 4) / 6.0 - std::numbers::pi * std::pow(hole, 4) / 2.0;
+  const heddle::friction::Model friction = coulomb();
+  const auto fabric = make_fabric({});
+  const Scene scene = stamping_scene(spec, fabric, friction);
+  CHECK(scene.tools[2].tilt->arm == Approx(std::sqrt(polar / (2.0 * area))).epsilon(1e-3));
 }
 
 TEST_CASE("on a blank that lies to one side the closed binder tilts until pressure balances about its axis",
