@@ -193,13 +193,19 @@ void check_effect(const Effect& effect, Problems& problems) {
 void check_effect(const Orientation& effect, Problems& problems) {
   check_fields(effect, "effects.orientation", problems);
   require(
-      problems, effect.form == Orientation::Form::tows || effect.amplitude < 1.0,
+      problems, effect.form != Orientation::Form::trellis || effect.amplitude < 1.0,
       {.id = "effects.orientation.trellis"_rule,
        .key = "effects.orientation.amplitude",
        .value = fmt::format("{}", effect.amplitude),
        .rule = "must satisfy A < 1 in the form trellis",
        .way_out = "Friction across the long diagonal would turn negative; the film of Table 1's weave gives "
                   "up to 0.5."});
+  require(problems, effect.form != Orientation::Form::film || effect.amplitude <= 1.0,
+          {.id = "effects.orientation.film"_rule,
+           .key = "effects.orientation.amplitude",
+           .value = fmt::format("{}", effect.amplitude),
+           .rule = "must satisfy A <= 1 in the form film",
+           .way_out = "1 is what the film of the unit cell gives."});
 }
 
 void check_effect(const ToolTemperatureShift& effect, Problems& problems) {

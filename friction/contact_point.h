@@ -8,6 +8,8 @@ struct Context {
   double pressure = 0.0;               ///< nominal p = N / A [Pa], >= 0
   double fabric_temperature = 453.15;  ///< [K]
   double tool_temperature = 358.15;    ///< [K]
+  /// Of the film's face towards the tool [K], where heat is followed through the film; 0: effects estimate it.
+  double interface_temperature = 0.0;
   double area_fraction = 1.0;          ///< phi: real over nominal contact area [-], > 0; 1 = nominal pressure
   double area_slope = 0.0;             ///< d phi / d p [1/Pa]
   /// theta: slip direction against the warp [rad]. Held (lagged) over a step: mu(theta) v/|v| has no
@@ -16,6 +18,9 @@ struct Context {
   /// gamma: trellis shear angle, > 0 where warp and weft turn towards each other on the side where theta
   /// grows from warp to weft [rad]. Held like theta.
   double shear_angle = 0.0;
+  /// K_c, K_s of the film of the sheared fabric at this pressure and shear: its drag goes as
+  /// 1 + K_c cos 2 theta + K_s sin 2 theta [-]. Held like theta.
+  double drag_cosine = 0.0, drag_sine = 0.0;
   /// dt [s]: how long the step lasts over which the memory advances; 0 = it stays as it is.
   double time_step = 0.0;
 };

@@ -91,9 +91,11 @@ struct Inputs {
   Sensitive slip_speed, pressure, fabric_temperature, tool_temperature;
   Sensitive slip, dwell, age, load_slip, slip_resistance;
   Sensitive area_fraction;
-  double slip_angle = 0.0;   ///< [rad], frozen in the lag
-  double shear_angle = 0.0;  ///< [rad], the same
-  double time_step = 0.0;    ///< [s]
+  double slip_angle = 0.0;                    ///< [rad], frozen in the lag
+  double shear_angle = 0.0;                   ///< [rad], the same
+  double drag_cosine = 0.0, drag_sine = 0.0;  ///< [-], the same
+  double time_step = 0.0;                     ///< [s]
+  double interface_temperature = 0.0;         ///< [K], frozen in the lag; 0: not known
   /// How heat reaches the film; null = the effects' own closed forms.
   const FilmConduction* conduction = nullptr;
 
@@ -110,7 +112,10 @@ struct Inputs {
         area_fraction(pressure.mapped(context.area_fraction, context.area_slope)),
         slip_angle(context.slip_angle),
         shear_angle(context.shear_angle),
+        drag_cosine(context.drag_cosine),
+        drag_sine(context.drag_sine),
         time_step(context.time_step),
+        interface_temperature(context.interface_temperature),
         conduction(film_conduction) {}
 };
 

@@ -34,6 +34,13 @@ friction::Context context_of(const Scene& scene, double fabric_temperature, doub
   return context;
 }
 
+// Of the film between fabric and tool; two plies have no such film.
+void set_drag_direction(const Scene& scene, friction::Context& context) {
+  const auto drag = scene.fabric->contact.drag.evaluate(context.pressure, context.shear_angle);
+  context.drag_cosine = drag.cosine;
+  context.drag_sine = drag.sine;
+}
+
 // Slip direction against the warp in the tangent plane of the contact, growing towards the weft whichever
 // face of the sheet the tool touches [rad]; 0 at rest.
 double slip_angle(const TowDirections& tows, const Vector3d& normal, const Vector3d& v) {
@@ -92,7 +99,10 @@ FrictionPoints freeze(const System& system, const StepData& step, const VectorXd
       point.normal = d.normal.normalized();
       point.context = context_of(scene, fabric_temperature(scene, *step.start, k, system.contact_points()[i]),
                                  contact.pressure, shear_angle[i]);
+      set_drag_direction(scene, point.context);
       point.context.tool_temperature = tool_temperature(scene, k);
+      point.context.interface_temperature =
+          face_temperature(scene, *step.start, k, system.contact_points()[i]);
       point.context.time_step = step.dt;
       point.context.slip_angle = slip_angle(tow_directions(scene.blank, scene.contact_sites, x, i),
                                             point.normal, system.relative_velocity(step, x, k, i));
@@ -170,7 +180,9 @@ FrictionPoints blend(const System& system, const StepData& step, const FrictionP
       const double angle = k < scene.tools.size() ? shear_angle[i] : last.shear_angle;
       point.context = context_of(scene, last.fabric_temperature,
                                  point.load / system.area_in_row(step, static_cast<int>(k), i), angle);
+      if (k < scene.tools.size()) set_drag_direction(scene, point.context);
       point.context.tool_temperature = last.tool_temperature;
+      point.context.interface_temperature = last.interface_temperature;
       point.context.time_step = last.time_step;
       point.context.slip_angle = last.slip_angle;
     });

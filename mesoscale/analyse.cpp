@@ -4,6 +4,7 @@
 
 #include "mesoscale/cell_spec.h"
 #include "mesoscale/contact.h"
+#include "mesoscale/film_direction.h"
 #include "mesoscale/forming.h"
 #include "mesoscale/state.h"
 
@@ -71,6 +72,9 @@ CellResult analyse(const CellSpec& spec) {
   for (std::size_t i = 0; i < 2; ++i) out.bending[i] = constant_in_temperature(models.bending[i].value);
   out.compaction = std::move(contact.compaction);
   out.contact = std::move(contact.contact);
+  if (spec.film)
+    out.contact.drag =
+        drag_direction(fabric, models.compaction, spec.resin, *spec.film, is_balanced(spec.weave));
   out.provenance = {specification_hash(spec), priors(spec.forming), contact.grid_error};
   result.summary.locking_angle = locking_angle(out.shear_stress);
 

@@ -92,6 +92,27 @@ void check_resin(Problems& problems, const ResinSpec& r) {
   for (const Bound& bound : bounds) add_if_broken(problems, bound);
 }
 
+void check_film(Problems& problems, const FilmDirectionSpec& f) {
+  const double fill = f.fill.value_or(0.5);
+  const Bound bounds[] = {
+      {"film.speed", f.speed, "mm/s", 1e3, above_to(0.0, f.speed, 10.0),
+       "must satisfy 0 < speed <= 10000 mm/s",
+       "A blank is drawn in at some 50 mm/s where the punch takes 163."},
+      {"film.temperature", f.temperature, "K", 1.0, within(200.0, f.temperature, 1000.0),
+       "must lie between 200 and 1000 K", "The melt of the blank: 180 degC."},
+      {"film.fill", fill, "%", 100.0, fill > 0.0 && fill < 1.0, "must satisfy 0 < fill < 100 %",
+       "Leave it out for resin spread evenly over all room beside the glass."},
+      {"film.roughness", f.roughness, "um", 1e6, above_to(0.0, f.roughness, 1e-3),
+       "must satisfy 0 < roughness <= 1000 um", "A fibre's radius: 9.25 um."},
+      {"film.boundary_friction", f.boundary_friction, "", 1.0, within(0.0, f.boundary_friction, 2.0),
+       "must lie between 0 and 2", "The default is 0.2."},
+  };
+  for (const Bound& bound : bounds) add_if_broken(problems, bound);
+  if (f.samples != 32 && f.samples != 64 && f.samples != 128)
+    problems.push_back({"film.samples.range"_rule, "film.samples", fmt::format("{}", f.samples),
+                        "must be 32, 64 or 128", "64 is within 3 % of 128 (docs/theory/film.md)."});
+}
+
 void check_forming(Problems& problems, const FormingSpec& f) {
   const Bound bounds[] = {
       {"forming.compaction_modulus", f.compaction_modulus, "MPa", 1e-6,
@@ -399,6 +420,7 @@ Problems check(const CellSpec& spec) {
   check_stack(problems, spec.stack);
   check_resin(problems, spec.resin);
   check_forming(problems, spec.forming);
+  if (spec.film) check_film(problems, *spec.film);
   // States and packing need a geometry, and so sound numbers.
   if (problems.empty()) problems = check_state(spec);
   if (problems.empty()) check_packing(problems, spec);

@@ -85,6 +85,17 @@ struct ResinSpec {
   double reference_temperature = 453.15;  ///< [K]
 };
 
+/// The film for which friction's dependence on the direction of sliding is worked out (film_direction.h).
+/// SI units.
+struct FilmDirectionSpec {
+  double speed = 50e-3;             ///< of the slip [m/s]
+  double temperature = 453.15;      ///< of the film [K]
+  std::optional<double> fill = {};  ///< share of the gap that resin fills [-]; absent: spread evenly (film.h)
+  double roughness = 9.25e-6;       ///< film left where a tow is touched [m]; a fibre's radius, prior
+  double boundary_friction = 0.2;   ///< of touching fibres [-], prior
+  int samples = 64;                 ///< along each edge of the repeat: 32, 64 or 128
+};
+
 /// Law of the tows' compaction (compaction.h). van_wyk is the network of exponent 3.
 enum class CompactionChoice { toll, van_wyk, gutowski };
 
@@ -124,6 +135,7 @@ struct CellSpec {
   ResinSpec resin;
   FormingSpec forming;
   StackSpec stack;
+  std::optional<FilmDirectionSpec> film = {};  ///< absent: friction is alike in all directions
 };
 
 /// The first stage's answer: what the report shows of the cell.

@@ -73,13 +73,21 @@ void check_convex(Problems& problems, const Surface& energy) {
 
 }  // namespace
 
-ContactArea::Value ContactArea::evaluate(double pressure, double shear_angle,
-                                         double /*sliding_angle*/) const {
+ContactArea::Value ContactArea::evaluate(double pressure, double shear_angle) const {
   const Curve::Value log = log_fraction.evaluate(std::log(pressure), std::abs(shear_angle));
   const double fraction = std::exp(log.y);
   // Beyond the table the log slope is held; an area cannot exceed the plate.
   if (fraction >= 1.0) return {1.0, 0.0};
   return {fraction, fraction * log.slope / pressure};
+}
+
+DragDirection::Value DragDirection::evaluate(double pressure, double shear_angle) const {
+  if (empty()) return {};
+  const std::vector<double>& table = cosine.curves().front().x();
+  const double log_pressure =
+      pressure > 0.0 ? std::clamp(std::log(pressure), table.front(), table.back()) : table.front();
+  const double angle = std::abs(shear_angle), side = shear_angle < 0.0 ? -1.0 : 1.0;
+  return {cosine.evaluate(log_pressure, angle).y, side * sine.evaluate(log_pressure, angle).y};
 }
 
 Problems check(const FabricProperties& fabric) {
@@ -123,6 +131,12 @@ Problems check(const FabricProperties& fabric) {
     require(problems, curve.empty() || curve.y().back() <= 0.0, "fabric.*.range"_family.of("contact"),
             "fabric.contact", curve.empty() ? 0.0 : curve.y().back(),
             "the area fraction must not exceed 1 (its log must be <= 0)");
+  for (const CurveFamily* family : {&fabric.contact.drag.cosine, &fabric.contact.drag.sine})
+    for (const Curve& curve : family->curves())
+      for (const double share : curve.y())
+        require(problems, std::abs(share) < 0.7, "fabric.*.range"_family.of("drag_direction"),
+                "fabric.drag_direction", share,
+                "drag must not turn negative in any direction (|K_c|, |K_s| < 0.7)");
   return problems;
 }
 

@@ -25,10 +25,26 @@ struct ShearRate {
   }
 };
 
-/// Where a fabric touches a flat tool: real over nominal contact area of one face, phi(p, gamma, theta).
-/// Stored as ln phi against ln p for several shear angles, so that beyond the table the log slope is held.
+/// Friction over the direction of sliding theta against the warp, from the film under the sheared fabric:
+///     mu = mean (1 + K_c cos 2 theta + K_s sin 2 theta)
+struct DragDirection {
+  CurveFamily cosine, sine;  ///< K_c, K_s against ln(p / 1 Pa); parameter: trellis shear angle [rad], >= 0
+
+  struct Value {
+    double cosine = 0.0, sine = 0.0;  ///< K_c, K_s [-]
+  };
+  bool empty() const { return cosine.empty(); }
+  /// Held beyond the table; nothing where it is empty. Fabric sheared the other way is its mirror image about
+  /// the warp: K_s changes its sign.
+  Value evaluate(double pressure, double shear_angle) const;
+};
+
+/// Where a fabric touches a flat tool: real over nominal contact area of one face, phi(p, gamma), stored as
+/// ln phi against ln p for several shear angles, so that beyond the table the log slope is held. An area has
+/// no direction; drag has, where the film under a sheared fabric was asked for.
 struct ContactArea {
   CurveFamily log_fraction;  ///< ln phi against ln(p / 1 Pa); parameter: trellis shear angle [rad]
+  DragDirection drag = {};   ///< empty where no film was asked for
 
   struct Value {
     double fraction;  ///< phi [-], 0..1
@@ -36,9 +52,7 @@ struct ContactArea {
   };
   /// @param pressure  nominal pressure [Pa], > 0
   /// @param shear_angle  trellis shear angle [rad], sign ignored
-  /// @param sliding_angle  slip direction against the warp [rad]. An area has no direction, so it is
-  ///        not used; drag depends on it, and the argument is here so that such a table can take this place.
-  Value evaluate(double pressure, double shear_angle, double sliding_angle = 0.0) const;
+  Value evaluate(double pressure, double shear_angle) const;
 };
 
 /// Where numbers come from: hash of the specification, and how far a finer grid would move them.

@@ -132,6 +132,22 @@ Problems check_friction(const FrictionSpec& spec, const ReadConfig& config) {
   return problems;
 }
 
+/// The film of the unit cell is what the effect's form takes.
+Problems check_film_direction(const Case& a_case) {
+  const auto& orientation = a_case.friction->model.effects.orientation;
+  if (!orientation || orientation->form != friction::Orientation::Form::film ||
+      (a_case.cell && a_case.cell->film))
+    return {};
+  return {{"effects.orientation.form.film"_rule,
+           "effects.orientation.form",
+           "film",
+           "takes the drag of the unit cell's film, which this file does not ask for",
+           "Add the block `film: {}` (and with it a weave), or choose form: trellis.",
+           "",
+           0,
+           {"film"}}};
+}
+
 /// The fabric that was pulled is a cell as well, at its own keys.
 Problems check_pulled_weave(const Case& a_case) {
   if (!a_case.cell || !a_case.friction->calibrated()) return {};
@@ -282,6 +298,7 @@ Problems check_between_keys(const Case& a_case, const ReadConfig& config) {
   if (a_case.friction) {
     append_new(problems, check_friction(*a_case.friction, config));
     append(problems, check_pulled_weave(a_case));
+    append(problems, check_film_direction(a_case));
   }
   if (a_case.friction_test) {
     if (a_case.friction_test->data != a_case.friction->calibration_data)

@@ -139,6 +139,18 @@ FabricOverride fabric_override_of(const Settings& settings, const std::filesyste
   return given;
 }
 
+std::optional<mesoscale::FilmDirectionSpec> film_direction_of(const Settings& settings) {
+  if (settings.blocks.count("film") == 0) return {};
+  mesoscale::FilmDirectionSpec film;
+  take(settings, "film.speed", film.speed);
+  take(settings, "film.temperature", film.temperature);
+  if (settings.has("film.fill")) film.fill = settings.number("film.fill");
+  take(settings, "film.roughness", film.roughness);
+  take(settings, "film.boundary_friction", film.boundary_friction);
+  if (settings.has("film.samples")) film.samples = settings.integer("film.samples");
+  return film;
+}
+
 mesoscale::CellSpec cell_of(const Settings& settings) {
   mesoscale::CellSpec cell;
   cell.weave = weave_of(settings, "weave");
@@ -151,6 +163,7 @@ mesoscale::CellSpec cell_of(const Settings& settings) {
   cell.resin = resin_of(settings);
   cell.forming = forming_of(settings);
   cell.stack = stack_of(settings);
+  cell.film = film_direction_of(settings);
   return cell;
 }
 

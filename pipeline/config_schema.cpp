@@ -225,6 +225,29 @@ std::vector<Key> resin_keys() {
   };
 }
 
+// The film whose drag over the direction of sliding the unit cell hands over.
+std::vector<Key> film_keys() {
+  std::vector<Key> keys{
+      {.path = "film.speed", .type = KeyType::quantity, .unit = "mm/s", .presence = defaulted,
+       .default_text = "50 mm/s", .range = "(0 mm/s, 10000 mm/s]", .help = "Of the slip for which the film is worked out."},
+      {.path = "film.temperature", .type = KeyType::quantity, .unit = "degC", .presence = defaulted,
+       .default_text = "180 degC", .range = "[200 K, 1000 K]", .help = "Of the film."},
+      {.path = "film.fill", .type = KeyType::quantity, .unit = "%", .presence = optional, .range = "(0, 1)",
+       .help = "Share of the gap under the tool that resin fills, narrowest places first; else spread evenly over all room beside the glass."},
+      {.path = "film.roughness", .type = KeyType::quantity, .unit = "um", .presence = defaulted,
+       .default_text = "9.25 um", .range = "(0 um, 1000 um]", .help = "Film left where a tow is touched; prior: a fibre's radius."},
+      {.path = "film.boundary_friction", .type = KeyType::quantity, .presence = defaulted, .default_text = "0.2",
+       .range = "[0, 2]", .help = "Of touching fibres; prior."},
+      {.path = "film.samples", .type = KeyType::integer, .presence = defaulted, .default_text = "64",
+       .range = "[32, 128]", .help = "Along each edge of the repeat: 32, 64 or 128."},
+  };
+  for (Key& key : keys) {
+    key.stage = Stage::cell;
+    key.used_when = "film";
+  }
+  return keys;
+}
+
 std::vector<Key> forming_keys() {
   const auto cell = Stage::cell;
   return {
@@ -389,6 +412,7 @@ std::vector<Key> all_keys() {
   append(keys, solid_keys());
   append(keys, resin_keys());
   append(keys, rheology_keys());
+  append(keys, film_keys());
   append(keys, forming_keys());
   append(keys, friction_keys());
   append(keys, calibration_weave_keys());

@@ -162,11 +162,12 @@ std::vector<Key> friction_effect_keys() {
        .type = KeyType::choice,
        .presence = Presence::defaulted,
        .default_text = "tows",
-       .choices = {"tows", "trellis"},
+       .choices = {"tows", "trellis", "film"},
        .stage = Stage::friction,
        .used_when = "effects.orientation",
        .help = "tows: 1 + A sin^2(2 theta) whatever the shear; trellis: along the long diagonal of the "
-               "sheared weave, growing with sin^2 of the shear angle."});
+               "sheared weave, growing with sin^2 of the shear angle; film: as the film of the unit cell drags "
+               "(block film)."});
   return keys;
 }
 
@@ -302,6 +303,7 @@ void take_effects(const Settings& settings, friction::Effects& effects) {
     take_fields(settings, block, *effect);
     if constexpr (std::is_same_v<E, friction::Orientation>) {
       if (settings.is(block + ".form", "trellis")) effect->form = E::Form::trellis;
+      if (settings.is(block + ".form", "film")) effect->form = E::Form::film;
     }
   });
 }

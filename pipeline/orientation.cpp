@@ -255,7 +255,7 @@ std::string note_on_friction(const friction::Model& model) {
       "2).";
   if (!friction::is_on(model.effects.orientation))
     return "The effect `orientation` is off, so mu is the same at every angle by construction." + paper;
-  if (model.effects.orientation->form == friction::Orientation::Form::trellis)
+  if (model.effects.orientation->form != friction::Orientation::Form::tows)
     return "The effect `orientation` follows the trellis: samples that are not sheared feel nothing of it." +
            paper;
   return fmt::format("The effect `orientation` is on: mu grows by {:g} sin^2(2 theta) of itself.",

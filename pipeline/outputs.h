@@ -138,6 +138,11 @@ std::string curve_csv(std::span<const FrictionCurveRow> rows);
 std::string contact_csv(const mesoscale::ContactArea& contact, std::span<const double> pressures,
                         std::span<const double> shear_angles);
 
+/// What the film under the sheared fabric makes of friction by direction, at the pressures and angles of its
+/// table. One row a pair, angles outermost: K_c, K_s, and how much more it drags where it drags most than
+/// across that direction.
+std::string drag_direction_csv(const mesoscale::DragDirection& drag);
+
 // ---- records (JSON)
 // ----------------------------------------------------------------------------------------------
 

@@ -158,6 +158,7 @@ constexpr CurveKeys shear_stress_keys{"sine_of_shear_angle", "stress_N_m"};
 constexpr CurveKeys bending_keys{"temperature_K", "stiffness_N_m"};
 constexpr CurveKeys compaction_keys{"approach_m", "pressure_Pa"};
 constexpr CurveKeys contact_keys{"log_pressure_Pa", "log_area_fraction"};
+constexpr CurveKeys drag_keys{"log_pressure_Pa", "share"};
 
 Json curve_json(const Curve& curve, CurveKeys keys) {
   return {{keys.x, curve.x()}, {keys.y, curve.y()}};
@@ -355,11 +356,21 @@ mesoscale::FabricProperties read_fabric(Reader& reader, const Json& root) {
   if (const Json* node = reader.member(root, "", "contact")) {
     fabric.contact.log_fraction = read_family(reader, *node, "contact", contact_keys);
   }
+  if (root.contains("drag_direction")) {  // where a film was asked for
+    const Json& node = root["drag_direction"];
+    const auto part = [&](const char* name) {
+      const Json* family = reader.member(node, "drag_direction", name);
+      return family ? read_family(reader, *family, fmt::format("drag_direction.{}", name), drag_keys)
+                    : CurveFamily();
+    };
+    fabric.contact.drag = {part("cos_2_theta"), part("sin_2_theta")};
+    reader.only(node, "drag_direction", {"cos_2_theta", "sin_2_theta"});
+  }
   if (const Json* node = reader.member(root, "", "provenance"))
     fabric.provenance = read_provenance(reader, *node);
   reader.only(root, "",
               {"areal_density_kg_m2", "pitch_m", "thickness_m", "tension_energy", "shear_stress",
-               "shear_rate", "bending", "compaction", "contact", "provenance"});
+               "shear_rate", "bending", "compaction", "contact", "drag_direction", "provenance"});
   return fabric;
 }
 
@@ -442,6 +453,9 @@ std::string fabric_json(const mesoscale::FabricProperties& fabric, const std::ve
              {{"specification", fabric.provenance.specification},
               {"unverified", fabric.provenance.unverified},
               {"grid_error", fabric.provenance.grid_error}}}};
+  if (const mesoscale::DragDirection& drag = fabric.contact.drag; !drag.empty())
+    root["drag_direction"] = {{"cos_2_theta", family_json(drag.cosine, drag_keys)},
+                              {"sin_2_theta", family_json(drag.sine, drag_keys)}};
   if (!given.empty()) root["provenance"]["given"] = given;
   return json_text(root);
 }

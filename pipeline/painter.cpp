@@ -149,6 +149,10 @@ std::string significant(double value, int digits) {
   return with_minus_sign(grouped(fmt::format("{:.{}f}", value, std::max(0, digits - 1 - decade))));
 }
 
+std::string significant_or_dash(double value, int digits) {
+  return std::isfinite(value) ? significant(value, digits) : "–";
+}
+
 std::string escape(std::string_view text) {
   std::string out;
   for (const char c : text) {

@@ -37,6 +37,8 @@ std::string decade_text(double value);
 /// Value to `digits` significant digits, without an exponent between 1e-4 and 1e6: "843", "0.0703",
 /// "2.1e-07".
 std::string significant(double value, int digits);
+/// The same, or a dash for what is not known.
+std::string significant_or_dash(double value, int digits);
 /// Text made safe inside an element or a double-quoted attribute.
 std::string escape(std::string_view text);
 

@@ -15,7 +15,8 @@ namespace heddle::pipeline {
 
 namespace {
 
-constexpr int frames = 20;  // of the blank, over the stroke
+constexpr int frames = 20;            // of the blank, over the stroke
+constexpr int checkpoint_steps = 10;  // the most between two checkpoints, where writing them is cheap
 
 // Everything written while the punch moves: what ends the run, it is there.
 class StampingFiles {
@@ -45,12 +46,16 @@ class StampingFiles {
     if (step % every_ == 0 || step == record_.steps) add_frame(step, blank);
   }
 
-  // A checkpoint now and then, and always the last one. The time it takes is below one per cent of the run's,
-  // whatever the size of the blank; results do not depend on when it is.
+  // A checkpoint after so many steps or so much time, whichever is first, and always the last one. The time
+  // it takes is below one per cent of the run's, whatever the size of the blank; results do not depend on
+  // when it is.
   void keep(const macroscale::StampingCheckpoint& checkpoint, bool last) {
-    const double now = Progress::steady_seconds();
-    const double wait = interval_ > 0.0 ? std::max(interval_, 100.0 * cost_) : 0.0;
-    if (!last && now - last_kept_ < wait) return;
+    const double now = Progress::steady_seconds(), passed = now - last_kept_;
+    ++steps_since_;
+    const bool due = passed >= interval_ || steps_since_ >= checkpoint_steps;
+    const bool cheap = interval_ == 0.0 || passed >= 100.0 * cost_;
+    if (!last && !(due && cheap)) return;
+    steps_since_ = 0;
     record_.at = checkpoint;
     const std::string bytes = bytes_of(record_);
     folder_.write_durably(checkpoint_name, bytes);
@@ -79,6 +84,7 @@ class StampingFiles {
   const mesoscale::FabricProperties& fabric_;
   double interval_;
   int every_;
+  int steps_since_ = 0;            // the last checkpoint
   double last_kept_, cost_ = 0.0;  // [s]
   bool from_cache_ = false;
   std::vector<SeriesFrame> series_;

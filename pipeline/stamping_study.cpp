@@ -136,10 +136,10 @@ std::vector<StudiedStep> steps_in(const fs::path& file) {
   return steps;
 }
 
-double result_of(const CaseRecord& record, const std::string& name) {
+double result_of(const CaseRecord& record, const std::string& name, double otherwise = 0.0) {
   for (const auto& [key, value] : record.results)
     if (key == name) return value;
-  return 0.0;
+  return otherwise;
 }
 
 void take(StudiedStamping& stamping, const CaseRecord& record, const fs::path& folder) {
@@ -150,6 +150,7 @@ void take(StudiedStamping& stamping, const CaseRecord& record, const fs::path& f
   stamping.energy_residual_max = result_of(record, "macroscale.energy_residual_max");
   stamping.outside_calibration = result_of(record, "macroscale.friction_work_outside_calibration");
   stamping.force_balance_residual_max = result_of(record, "macroscale.force_balance_residual_max");
+  stamping.grid_error = result_of(record, "macroscale.grid_error.punch_force_N", std::nan(""));
   const fs::path checkpoint = folder / "cases" / stamping.id / checkpoint_name;
   if (stamping.steps.empty() || !fs::exists(checkpoint)) return;
   const std::string bytes = read_file(checkpoint);
@@ -181,6 +182,7 @@ const std::vector<Column>& columns() {
   using T = StudiedStep;
   static const std::vector<Column> all{
       {"peak_punch_force_N", [](const S&, const T& t) { return t.force; }},
+      {"grid_error_punch_force_N", [](const S& s, const T&) { return s.grid_error; }},
       {"stroke_at_peak_mm", [](const S&, const T& t) { return 1e3 * t.stroke; }},
       {"shear_angle_max_deg", [](const S&, const T& t) { return degrees * t.shear; }},
       {"tow_strain_max", [](const S&, const T& t) { return t.tow_strain; }},
@@ -218,14 +220,15 @@ std::string note_on_calibration(const StampingStudyFindings& findings) {
 }
 
 void print(const StampingStudyFindings& findings) {
-  fmt::print("{:<16}{:>10}{:>8}{:>11}{:>11}{:>12}{:>11}{:>11}\n", "model", "binder N", "speed", "peak N",
-             "shear deg", "tow strain %", "friction J", "rate J");
+  fmt::print("{:<16}{:>10}{:>8}{:>11}{:>8}{:>11}{:>12}{:>11}{:>11}\n", "model", "binder N", "speed", "peak N",
+             "grid N", "shear deg", "tow strain %", "friction J", "rate J");
   for (const StudiedStamping& s : findings.stampings) {
     const StudiedStep* peak = s.peak();
     if (!peak) continue;
-    fmt::print("{:<16}{:>10.6g}{:>8.4g}{:>11.2f}{:>11.2f}{:>12.4f}{:>11.3f}{:>11.3f}{}\n",
+    fmt::print("{:<16}{:>10.6g}{:>8.4g}{:>11.2f}{:>8}{:>11.2f}{:>12.4f}{:>11.3f}{:>11.3f}{}\n",
                s.variation < 0 ? s.model : s.id, s.binder_force, s.speed_scale, peak->force,
-               degrees * peak->shear, 100.0 * peak->tow_strain, peak->friction, peak->shear_rate,
+               significant_or_dash(s.grid_error, 2), degrees * peak->shear, 100.0 * peak->tow_strain,
+               peak->friction, peak->shear_rate,
                s.status == CaseStatus::done ? "" : "  " + name_of(s.status));
   }
   for (const SpeedSignature& s : speed_signatures(findings)) {
@@ -330,7 +333,10 @@ std::string stamping_table_csv(const StampingStudyFindings& findings) {
     out += fmt::format("{},{},{},{},{}", s.id, s.model, shortest(s.binder_force), shortest(s.speed_scale),
                        name_of(s.status));
     const StudiedStep* peak = s.peak();
-    for (const Column& column : columns()) out += "," + (peak ? shortest(column.value(s, *peak)) : "");
+    for (const Column& column : columns()) {
+      const double value = peak ? column.value(s, *peak) : std::nan("");
+      out += "," + (std::isnan(value) ? "" : shortest(value));
+    }
     for (const PlaceColumn& column : place_columns)
       out += "," + (s.shear ? shortest(column.factor * (*s.shear).*column.member) : "");
     for (const std::string& value : s.values) out += "," + value;

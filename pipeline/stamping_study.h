@@ -1,5 +1,6 @@
 #pragma once
 
+#include <limits>
 #include <optional>
 #include <string>
 #include <vector>
@@ -34,9 +35,11 @@ struct StudiedStamping {
   double energy_residual_max = 0.0;         ///< [-]
   double outside_calibration = 0.0;         ///< share of friction work [-]
   double force_balance_residual_max = 0.0;  ///< [-]
-  int variation = -1;                       ///< of StampingStudySpec::variations; -1: none
-  std::vector<std::string> values = {};     ///< of StampingStudyFindings::keys, "" where it has none
-  std::optional<ShearPlace> shear = {};     ///< at the end of the stroke, or where it stopped
+  /// Estimated grid error of the punch force [N] (blank.grid_error); NaN where it is not known.
+  double grid_error = std::numeric_limits<double>::quiet_NaN();
+  int variation = -1;                    ///< of StampingStudySpec::variations; -1: none
+  std::vector<std::string> values = {};  ///< of StampingStudyFindings::keys, "" where it has none
+  std::optional<ShearPlace> shear = {};  ///< at the end of the stroke, or where it stopped
 
   /// The step at which the punch force is largest; null where there is none.
   const StudiedStep* peak() const;

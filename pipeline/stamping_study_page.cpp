@@ -71,6 +71,7 @@ std::string binder_section(const StampingStudyFindings& findings) {
   std::vector<std::vector<std::string>> rows;
   for (const StudiedStamping* run : runs)
     rows.push_back({fmt::format("{:g} N", run->binder_force), significant(run->peak()->force, 4),
+                    significant_or_dash(run->grid_error, 2),
                     fmt::format("{:.2f}", run->peak()->force / runs.front()->peak()->force),
                     fmt::format("{:.2f}", degrees * run->peak()->shear),
                     fmt::format("{:.4f}", 100.0 * run->peak()->tow_strain),
@@ -85,8 +86,8 @@ std::string binder_section(const StampingStudyFindings& findings) {
                               "{:.1f} % at most.",
                               significant(line->intercept, 3), significant(line->slope, 3),
                               100.0 * line->largest_miss))) +
-          table({"Binder force", "Peak force, N", "of the first", "Largest shear, °", "Tow strain, %",
-                 "Draw-in, mm"},
+          table({"Binder force", "Peak force, N", "its grid error, N", "of the first", "Largest shear, °",
+                 "Tow strain, %", "Draw-in, mm"},
                 rows));
 }
 
@@ -117,13 +118,14 @@ std::string speed_table(const StampingStudyFindings& findings) {
     for (const StudiedStamping* run : over_speed(findings, model.name)) {
       const StudiedStep& peak = *run->peak();
       rows.push_back({model.name + ", " + speed_name(run->speed_scale), significant(peak.force, 5),
-                      fmt::format("{:.2f}", 1e3 * peak.stroke), fmt::format("{:.3f}", degrees * peak.shear),
+                      significant_or_dash(run->grid_error, 2), fmt::format("{:.2f}", 1e3 * peak.stroke),
+                      fmt::format("{:.3f}", degrees * peak.shear),
                       fmt::format("{:.4f}", 100.0 * peak.tow_strain), significant(peak.work, 4),
                       fmt::format("{:.1f} %", 100.0 * peak.friction / peak.work),
                       fmt::format("{:.1f} %", 100.0 * peak.shear_rate / peak.work)});
     }
-  return table({"Model and speed", "Peak force, N", "at, mm", "Largest shear, °", "Tow strain, %", "Work, J",
-                "by friction", "by shear rate"},
+  return table({"Model and speed", "Peak force, N", "its grid error, N", "at, mm", "Largest shear, °",
+                "Tow strain, %", "Work, J", "by friction", "by shear rate"},
                rows);
 }
 

@@ -35,6 +35,8 @@ double of_place(const StudiedStamping& run, double ShearPlace::*member) {
 constexpr std::array shown{
     Shown{"Peak punch force", "N", "Peak punch force.",
           [](const StudiedStamping& run) { return run.peak()->force; }},
+    Shown{"Its grid error", "N", "Estimated grid error of the force, from a companion on twice the spacing.",
+          [](const StudiedStamping& run) { return run.grid_error; }},
     Shown{"Largest shear", "°", "Largest shear angle when the force is largest.",
           [](const StudiedStamping& run) { return degrees * run.peak()->shear; }},
     Shown{"Draw-in", "mm", "Largest draw-in when the force is largest.",
@@ -125,7 +127,7 @@ std::string table_of(const Variation& variation) {
     rows.push_back({fmt::format("{}", fmt::join(values, ", "))});
     for (const Shown& result : shown) {
       const double value = result.value(*run);
-      rows.back().push_back(std::isfinite(value) ? significant(value, 4) : "–");
+      rows.back().push_back(significant_or_dash(value, 4));
     }
   }
   return table(head, rows);

@@ -190,7 +190,7 @@ class SensitivityPicture {
 std::string shown_value(const StudiedCell& cell, std::size_t angle, std::size_t property) {
   if (!cell.failure.empty()) return "failed";
   const double value = cell.properties.at[angle][property];
-  return std::isfinite(value) ? significant(value * study::properties()[property].per_si, 4) : "–";
+  return significant_or_dash(value * study::properties()[property].per_si, 4);
 }
 
 // A row a property, a column a weave, at the first angle.

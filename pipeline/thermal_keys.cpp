@@ -143,10 +143,6 @@ Problems check_cooling_counted_twice(const friction::Effects& effects, const The
   if (friction::is_on(effects.tool_temperature_film))
     refuse("effects.tool_temperature_film.thermal"_rule, "effects.tool_temperature_film", cooled,
            "Leave it out where a part is stamped; fit the law with it in a file of the friction test.");
-  if (friction::is_on(effects.solidification))
-    refuse("effects.solidification.thermal"_rule, "effects.solidification",
-           "takes an interface temperature of its own from tool and fabric; thermal has it at every node",
-           "Leave it out; thermal reports where resin has frozen.");
   if (friction::is_on(effects.shear_heating) && spec.friction_heat)
     refuse("effects.shear_heating.thermal"_rule, "effects.shear_heating",
            "warms the film by friction once more: thermal.friction_heat does",

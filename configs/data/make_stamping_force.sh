@@ -8,13 +8,15 @@
 set -eu
 program=$1 folder=$2 seed=$3
 shift 3
-hidden=
-for assignment in "$@"; do hidden="$hidden --set $assignment"; done
+# Each KEY=VALUE behind its own --set, spaces of a value kept.
+for assignment in "$@"; do
+  set -- "$@" --set "$assignment"
+  shift
+done
 for speed in 0.5 0.7 1 1.4 2; do
-  # shellcheck disable=SC2086
   "$program" run configs/discover/stamping.yaml -o "$folder/$speed" --quiet --force --set process.punch.speed_scale=$speed \
     --set blank.spacing='6 mm' --set process.steps=48 --set blank.grid_error=off --set blank.symmetry=none --set friction.coefficient=0.28 \
-    --set forming.tow_friction=0.23 $hidden > "$folder.$speed.log" 2>&1 || { cat "$folder.$speed.log" >&2; exit 1; }
+    --set forming.tow_friction=0.23 "$@" > "$folder.$speed.log" 2>&1 || { cat "$folder.$speed.log" >&2; exit 1; }
 done
 echo "condition_id,sample_id,day_id,speed_scale,binder_force_N,tool_temperature_C,blank_temperature_C,orientation_deg,punch_displacement_mm,punch_force_N"
 for speed in 0.5 0.7 1 1.4 2; do

@@ -31,6 +31,9 @@ double along_the_long_diagonal(double theta, double gamma) {
 Sensitive factor_of(const Orientation& effect, const Inputs& inputs) {
   if (effect.form == Orientation::Form::trellis)
     return 1.0 + effect.amplitude * along_the_long_diagonal(inputs.slip_angle, inputs.shear_angle);
+  if (effect.form == Orientation::Form::film)
+    return 1.0 + effect.amplitude * (inputs.drag_cosine * std::cos(2.0 * inputs.slip_angle) +
+                                     inputs.drag_sine * std::sin(2.0 * inputs.slip_angle));
   const double sine = std::sin(2.0 * inputs.slip_angle);
   return 1.0 + effect.amplitude * sine * sine;
 }
@@ -41,7 +44,9 @@ Sensitive factor_of(const DwellAgeing& effect, const Inputs& inputs) {
 
 Sensitive factor_of(const Solidification& effect, const Inputs& inputs) {
   Sensitive interface;
-  if (inputs.conduction)
+  if (inputs.interface_temperature > 0.0)
+    interface = inputs.interface_temperature;
+  else if (inputs.conduction)
     interface = inputs.fabric_temperature + face_share(*inputs.conduction, inputs.dwell) *
                                                 (inputs.tool_temperature - inputs.fabric_temperature);
   else

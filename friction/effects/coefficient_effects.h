@@ -30,11 +30,12 @@ struct StickSlip {
 /// Effect F7: friction that depends on the slip direction theta against the warp.
 ///     tows:     mu *= 1 + A sin^2(2 theta)
 ///     trellis:  mu *= 1 + A sin^2(gamma) cos 2(theta - theta_d),  theta_d = +-(90 deg - |gamma|)/2
+///     film:     mu *= 1 + A (K_c cos 2 theta + K_s sin 2 theta),  K(p, gamma) of the unit cell's film
 /// theta_d is the long diagonal of the trellis, on the side of gamma's sign: none without shear, the same
 /// after warp and weft are exchanged, and mirrored with the fabric.
 struct Orientation {
-  enum class Form { tows, trellis };
-  double amplitude = 0.0;  ///< A [-], > -1, and < 1 in the form trellis; 0 = off
+  enum class Form { tows, trellis, film };
+  double amplitude = 0.0;  ///< A [-], > -1, and < 1 in the form trellis, <= 1 in the form film; 0 = off
   Form form = Form::tows;
 };
 
@@ -53,7 +54,8 @@ struct DwellAgeing {
 
 /// Effect F11: mu *= 1 + A (1 - exp(-t/tau)) / (1 + exp((T_i - T_c)/w)), at the interface temperature
 /// T_i = b T_tool + (1 - b) T_fabric of two half-spaces. With a film conduction T_i is the temperature of the
-/// film's face towards the tool, and b is not used.
+/// film's face towards the tool, and where heat is followed through the blank that of its face (Context);
+/// then b is not used.
 struct Solidification {
   double amplitude = 0.0;      ///< A [-], > -1; 0 = off
   double onset = 390.15;       ///< T_c [K], > 0
@@ -132,15 +134,19 @@ template <>
 struct About<Orientation> {
   static constexpr const char* id = "orientation";
   static constexpr const char* equation =
-      "mu *= 1 + A sin^2(2 theta) | mu *= 1 + A sin^2(gamma) cos 2(theta - theta_d)";
+      "mu *= 1 + A sin^2(2 theta) | mu *= 1 + A sin^2(gamma) cos 2(theta - theta_d) | mu *= 1 + A (K_c(p, "
+      "gamma) cos 2 theta + K_s(p, gamma) sin 2 theta)";
   static constexpr const char* source =
-      "the paper saw relatively none; test range 0 to 0.15; trellis: the film of the geometry (derived)";
-  static constexpr std::array fields{Field<Orientation>{
-      "amplitude",
-      "",
-      &Orientation::amplitude,
-      {-1.0, 10.0, true, false},
-      "Excess at 45 deg to the tows, or (trellis) along the long diagonal of a closed trellis; 0 is off."}};
+      "the paper saw relatively none; test range 0 to 0.15; trellis, film: the film of the geometry "
+      "(derived)";
+  static constexpr std::array fields{
+      Field<Orientation>{"amplitude",
+                         "",
+                         &Orientation::amplitude,
+                         {-1.0, 10.0, true, false},
+                         "Excess at 45 deg to the tows, or (trellis) along the long diagonal of a closed "
+                         "trellis, or (film) share "
+                         "of what the film gives; 0 is off."}};
 };
 template <>
 struct About<Adhesion> {

@@ -90,8 +90,7 @@ std::array<thermal::Face, 2> faces_at(const System& system, const State& state, 
   std::array<thermal::Face, 2> faces{thermal::air_face(spec.air), thermal::air_face(spec.air)};
   std::array<double, 2> conductance{}, flow{};
   for (int k = 0; k < static_cast<int>(scene.tools.size()); ++k) {
-    const NormalContact contact =
-        system.contact_at(state.node(node), k, system.pose(state, k)).normal;
+    const NormalContact contact = system.contact_at(state.node(node), k, system.pose(state, k)).normal;
     if (contact.pressure <= 0.0) continue;
     const Side side = side_of(scene.tools[k].role);
     const double h = spec.contact.at(contact.pressure).value;
@@ -218,14 +217,28 @@ double tool_temperature(const Scene& scene, int tool) {
   return own.value_or(scene.tool_temperature);
 }
 
-double fabric_temperature(const Scene& scene, const State& state, int tool, const ContactPoint& point) {
-  const BlankHeat& heat = state.heat;
-  if (heat.empty()) return scene.blank_temperature_at(state.time);
+namespace {
+
+// Of a contact point on the side that a tool touches, from numbers at the nodes, bottom and top.
+double at_side(const Scene& scene, int tool, const ContactPoint& point,
+               const std::vector<std::array<double, 2>>& of_nodes) {
   const Side side = side_of(scene.tools[static_cast<std::size_t>(tool)].role);
   double mean = 0.0;
   for (std::size_t a = 0; a < static_cast<std::size_t>(point.nodes); ++a)
-    mean += point.weight[a] * heat.film[static_cast<std::size_t>(point.node[a])][side];
+    mean += point.weight[a] * of_nodes[static_cast<std::size_t>(point.node[a])][side];
   return mean;
+}
+
+}  // namespace
+
+double fabric_temperature(const Scene& scene, const State& state, int tool, const ContactPoint& point) {
+  if (state.heat.empty()) return scene.blank_temperature_at(state.time);
+  return at_side(scene, tool, point, state.heat.film);
+}
+
+double face_temperature(const Scene& scene, const State& state, int tool, const ContactPoint& point) {
+  if (state.heat.empty()) return 0.0;
+  return at_side(scene, tool, point, state.heat.field.face);
 }
 
 void advance_heat(const System& system, const State& start, State& end) {

@@ -67,6 +67,9 @@ double tool_temperature(const Scene& scene, int tool);
 /// What friction takes for the fabric's temperature at a contact point against a tool [K].
 double fabric_temperature(const Scene& scene, const State& state, int tool, const ContactPoint& point);
 
+/// Of the film's face at a contact point against a tool [K]; 0 where the run has one temperature.
+double face_temperature(const Scene& scene, const State& state, int tool, const ContactPoint& point);
+
 /// The heat of `end` over the step that led there from `start`: contacts as they are at the end of it,
 /// friction as it was dissipated. What it says of viscosities holds for the next step (explicit coupling,
 /// first order in the step). @throws NumericalError

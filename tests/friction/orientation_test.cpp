@@ -1,4 +1,4 @@
-// Effect F7 in its two forms: what turns with the fabric.
+// Effect F7 in its three forms: what turns with the fabric.
 #include <catch2/catch.hpp>
 
 #include <cmath>
@@ -12,8 +12,12 @@ namespace {
 
 constexpr double pi = std::numbers::pi;
 
+struct Drag {
+  double cosine = 0.0, sine = 0.0;
+};
+
 /// mu over that without the effect.
-double factor(Orientation::Form form, double amplitude, double theta, double gamma) {
+double factor(Orientation::Form form, double amplitude, double theta, double gamma, Drag drag = {}) {
   Model model;
   model.law = HerseyPower{0.6, 0.14};
   Context context;
@@ -21,6 +25,8 @@ double factor(Orientation::Form form, double amplitude, double theta, double gam
   context.pressure = 1e5;
   context.slip_angle = theta;
   context.shear_angle = gamma;
+  context.drag_cosine = drag.cosine;
+  context.drag_sine = drag.sine;
   const double without = evaluate(model, context, {}).mu;
   model.effects.orientation = Orientation{.amplitude = amplitude, .form = form};
   return evaluate(model, context, {}).mu / without;
@@ -64,4 +70,21 @@ TEST_CASE(
   // The form that reads no shear keeps the first symmetry only where there is none.
   const auto tows = [&](double angle) { return factor(Orientation::Form::tows, 0.4, angle, gamma); };
   CHECK(std::abs(tows(0.5 * pi - gamma - 0.9) - tows(0.9)) > 1e-3);
+}
+
+TEST_CASE("with the film's drag friction turns by its two shares, and by nothing where there is no table",
+          "[friction][effects][analytic]") {
+  const double theta = GENERATE(-1.1, 0.0, 0.3, 0.9, 2.5), gamma = GENERATE(-0.7, 0.25);
+  const auto film = [&](double amplitude, Drag drag) {
+    return factor(Orientation::Form::film, amplitude, theta, gamma, drag);
+  };
+  CHECK(film(1.0, {0.1, -0.2}) ==
+        Approx(1.0 + 0.1 * std::cos(2.0 * theta) - 0.2 * std::sin(2.0 * theta)).epsilon(1e-12));
+  CHECK(film(0.5, {0.1, -0.2}) - 1.0 == Approx(0.5 * (film(1.0, {0.1, -0.2}) - 1.0)).margin(1e-15));
+  CHECK(film(1.0, {}) == 1.0);
+  CHECK(film(0.0, {0.1, -0.2}) == 1.0);
+  // D (sin, cos) of the shear is the form trellis with A sin^2(gamma) = D.
+  const double share = 0.4 * std::sin(gamma) * std::sin(gamma), side = gamma < 0.0 ? -1.0 : 1.0;
+  CHECK(film(1.0, {share * std::abs(std::sin(gamma)), side * share * std::cos(gamma)}) ==
+        Approx(trellis(theta, gamma)).epsilon(1e-12));
 }

@@ -183,7 +183,7 @@ TEST_CASE("V2: on turned and trimmed blanks uniform stretch and shear store dens
   for (int i = 0; i < scene.blank.nodes(); ++i)
     if (around[i] == 4.0) worst = std::max(worst, g.segment<3>(3 * i).norm()), ++inner;
   CHECK(inner > 500);
-  CHECK(worst < 1e-9 * ea * 9e-3);
+  CHECK(worst < 1e-10 * ea * e1 * 9e-3);  // of what one tow carries
 
   // Turned rigidly it stores nothing and pulls nowhere.
   const Eigen::Matrix3d turn = (Eigen::AngleAxisd(0.7, Vector3d(1, 2, 3).normalized())).toRotationMatrix();
@@ -259,8 +259,9 @@ TEST_CASE("V2: a plate presses a trimmed blank evenly, and its force is p times 
   System system(scene);
   State state = initial_state(scene);
   SolveOptions options;
-  options.force_tolerance = options.relative_tolerance = 1e-9;
-  for (int k = 0; k < 4; ++k) {
+  options.force_tolerance = 1e-10;
+  options.relative_tolerance = 0.0;
+  for (int k = 0; k < 6; ++k) {
     State end;
     StepData step;
     const StepSummary summary = advance(system, state, 10.0, state.tool_z, {}, options, end, step);
@@ -278,7 +279,7 @@ TEST_CASE("V2: a plate presses a trimmed blank evenly, and its force is p times 
     CHECK(pressure == Approx(expected).epsilon(0.01));
     sum += pressure * scene.blank.node_area[i];
   }
-  CHECK(sum == Approx(force).epsilon(1e-8));
+  CHECK(sum == Approx(force).epsilon(1e-10));
 }
 
 TEST_CASE("blanks that the tools cannot hold are refused by shape, holes that leave the blank as well",

@@ -19,8 +19,10 @@ namespace {
 
 /// A square sheet between two plates, sheared uniformly by gamma, that moves along `slip` in a frame turned
 /// by `turn` about the normal of the plates and tilted with them: the points of both faces.
-FrictionPoints points_of(double gamma, const Vector3d& slip, double turn, double tilt, bool swapped = false) {
-  const auto fabric = heddle::test::make_fabric({});
+FrictionPoints points_of(double gamma, const Vector3d& slip, double turn, double tilt, bool swapped = false,
+                         const heddle::mesoscale::DragDirection& drag = {}) {
+  auto fabric = heddle::test::make_fabric({});
+  fabric.contact.drag = drag;
   heddle::friction::Model model;
   model.law = heddle::friction::Coulomb{0.3};
   const Matrix3d frame =
@@ -99,4 +101,33 @@ TEST_CASE("friction along the trellis is the same with warp and weft exchanged a
   for (const auto& face : points_of(-gamma, mirrored, 0.0, 0.0))
     for (const FrictionPoint& point : face) CHECK(factor_at(point) == Approx(mu).epsilon(1e-9));
   CHECK(factor_at(points_of(gamma, mirrored, 0.0, 0.0)[0][7]) != Approx(mu).epsilon(1e-3));
+}
+
+TEST_CASE(
+    "a contact point takes the film's drag at its own pressure and shear, and turns with it alike seen from "
+    "anywhere",
+    "[macroscale][contact][friction][invariant]") {
+  const double gamma = GENERATE(-0.5, 0.5);
+  const Vector3d slip(0.015, -0.004, 0.0);
+  const auto drag = [](double share) {
+    return heddle::CurveFamily(
+        {0.0, 1.0}, {heddle::Curve({0.0, 20.0}, {0.0, 0.0}), heddle::Curve({0.0, 20.0}, {0.0, share})});
+  };
+  const heddle::mesoscale::DragDirection table{drag(0.2), drag(0.4)};
+  const auto mu = [](const FrictionPoint& point) {
+    heddle::friction::Model model;
+    model.effects.orientation =
+        heddle::friction::Orientation{.amplitude = 1.0, .form = heddle::friction::Orientation::Form::film};
+    return law_at({&model, 1e-5}, point, 0.01).mu / 0.3;
+  };
+  const FrictionPoint first = points_of(gamma, slip, 0.0, 0.0, false, table)[0][7];
+  const double level = 0.5 * std::log(first.context.pressure) / 20.0;
+  CHECK(first.context.drag_cosine == Approx(0.2 * level).epsilon(1e-9));
+  CHECK(first.context.drag_sine == Approx((gamma < 0.0 ? -0.4 : 0.4) * level).epsilon(1e-9));
+  CHECK(std::abs(mu(first) - 1.0) > 1e-3);
+  for (const auto& face : points_of(gamma, slip, 0.4, 0.5, false, table))
+    for (const FrictionPoint& point : face) CHECK(mu(point) == Approx(mu(first)).epsilon(1e-6));
+  const Vector3d mirrored(0.015, 0.004, 0.0);
+  for (const auto& face : points_of(-gamma, mirrored, 0.0, 0.0, false, table))
+    for (const FrictionPoint& point : face) CHECK(mu(point) == Approx(mu(first)).epsilon(1e-6));
 }

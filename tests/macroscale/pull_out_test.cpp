@@ -58,8 +58,10 @@ double gap(const friction::Model& model, const friction::FrictionTestRow& row) {
 
 }  // namespace
 
-TEST_CASE("law and finite elements agree within 1 % on every row of Tables 2 to 4, within 0.5 % for Coulomb",
-          "[macroscale][friction][paper][slow]") {
+TEST_CASE(
+    "law and finite elements agree on every row of Tables 2 to 4: along the tows within 0.1 %, turned within "
+    "1 %",
+    "[macroscale][friction][paper][slow]") {
   auto rows = friction::one_at_a_time(friction::read_test_design(std::string(heddle::test::source_dir) +
                                                                  "/configs/data/friction_table2.csv"));
   const auto more = friction::read_friction_table(std::string(heddle::test::source_dir) +
@@ -68,8 +70,10 @@ TEST_CASE("law and finite elements agree within 1 % on every row of Tables 2 to 
   REQUIRE(rows.size() == 26);
   for (const auto& row : rows) {
     CAPTURE(row.name);
-    CHECK(std::abs(gap(paper_law(), row)) < 0.01);
-    CHECK(std::abs(gap(coulomb(), row)) < 0.005);
+    // A sample at an angle to its tows shears under its own pull, so that not all of it slides alike.
+    const bool turned = row.orientation != 0.0;
+    CHECK(std::abs(gap(paper_law(), row)) < (turned ? 0.01 : 0.001));
+    CHECK(std::abs(gap(coulomb(), row)) < (turned ? 0.005 : 0.001));
   }
 }
 

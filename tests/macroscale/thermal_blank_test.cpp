@@ -92,6 +92,35 @@ TEST_CASE("cold tools cool the faces they touch, stiffen the melt and raise the 
                                           << heat.coldest_face - 273.15 << " degC");
 }
 
+TEST_CASE("beside temperatures solidification takes those of the faces: none solid, all solid, and between",
+          "[macroscale][thermal][friction]") {
+  const StampingSpec spec = small_case();
+  const auto peak = [&](double onset, double tool_weight, double scale = 0.2) {
+    auto law = law_of_the_film();
+    std::get<heddle::friction::HerseyPower>(law.law).scale = scale;
+    if (onset > 0.0)
+      law.effects.solidification = heddle::friction::Solidification{
+          .amplitude = 0.5, .onset = onset, .width = 1.0, .time = 1e-9, .tool_weight = tool_weight};
+    const StampingResult result = run_stamping(spec, fabric(), law);
+    REQUIRE(result.summary.completed);
+    return result.summary.peak_punch_force;
+  };
+  const double without = peak(0.0, 0.9);
+  // Colder than any tool, warmer than any melt: the law by itself, and half as much again (but for the first
+  // step of a contact, which has no dwell yet).
+  CHECK(peak(300.0, 0.9) == Approx(without).epsilon(1e-9));
+  const double all = peak(600.0, 0.9);
+  CHECK(all == Approx(peak(0.0, 0.9, 0.3)).epsilon(0.02));
+  // Between the temperatures of tool and melt some faces are solid; what is weighed for half-spaces does not
+  // count.
+  const double some = peak(420.0, 0.9);
+  WARN("solidification beside temperatures: none " << without << " N, some " << some << " N, all " << all
+                                                   << " N");
+  CHECK(some > 1.01 * without);
+  CHECK(some < 0.99 * all);
+  CHECK(peak(420.0, 0.2) == some);
+}
+
 TEST_CASE("over a stamping, heat content changes by what went through the faces and by friction",
           "[macroscale][thermal][balance]") {
   StampingSpec spec = small_case(10);

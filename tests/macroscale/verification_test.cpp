@@ -36,6 +36,8 @@ TEST_CASE("V3: with tows turned 10 degrees against the frame the net locks: alig
   const auto fabric = diagonal_net(200.0);
   const double aligned = frame_torque(fabric, 0.1, 0.01, 0.0, 0.1);
   const double turned = frame_torque(fabric, 0.1, 0.01, 10.0 * std::numbers::pi / 180.0, 0.1);
+  WARN("V3 locking factor, tows 10 deg off the frame at 0.1 rad: torque "
+       << turned << " N m, aligned " << aligned << " N m, factor " << turned / aligned);
   CHECK(turned > 50.0 * aligned);
 }
 
@@ -63,7 +65,7 @@ TEST_CASE("V3: inner nodes of a driven picture frame stay on the uniform shear b
     CHECK((state.node(i) - in_frame(scene.blank.reference[i], 0.6)).norm() < 1e-6);
 }
 
-TEST_CASE("V10: a sphere on a compliant layer carries 2 pi R times the integral of the pressure curve",
+TEST_CASE("V10: a sphere on a compliant layer carries 2 pi a times the integral of the pressure curve",
           "[macroscale][verification]") {
   const auto fabric = make_fabric({});
   const double radius = 0.07, depth = 0.3e-3;
@@ -83,9 +85,16 @@ TEST_CASE("V10: a sphere on a compliant layer carries 2 pi R times the integral 
     end.tool_z = {-depth};
     return account(system, step, end).forces.on_tool[0].z();
   };
-  // Thin layer: area element 2 pi R d(approach); the sphere's slope is below depth / R.
-  const double exact = 2.0 * std::numbers::pi * radius * fabric.compaction.curves().front().integral(depth);
-  CHECK(force(2.5e-4) == Approx(exact).epsilon(0.01));
+  // At the distance s from the centre, a above the middle of the sheet, fabric is pressed by R + H/2 - s and
+  // pushes up by a / s of it; r dr = s ds. Of a thin layer a is R.
+  const double a = radius + 0.5 * fabric.thickness - depth;
+  const double exact = 2.0 * std::numbers::pi * a * fabric.compaction.curves().front().integral(depth);
+  std::vector<double> gaps;
+  for (const double spacing : {1e-3, 5e-4, 2.5e-4}) gaps.push_back(std::abs(force(spacing) / exact - 1.0));
+  WARN("V10, contact at " << (sites == ContactSites::nodes ? "nodes" : "Gauss points")
+                          << ", spacing 1, 0.5, 0.25 mm: off by " << gaps[0] << ", " << gaps[1] << ", "
+                          << gaps[2] << "; order " << std::log2(gaps[0] / gaps[2]) / 2.0);
+  CHECK(gaps[2] < 1e-4);
   CHECK(std::abs(force(1e-2) / exact - 1.0) > 0.1);  // a node or four points alone cannot: the check can fail
 }
 

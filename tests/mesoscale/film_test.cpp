@@ -1,6 +1,7 @@
 // Film and touched tows together: load balance, direction of sliding, pressure exponent of the touched area.
 // Tests that print tables: ./heddle test -R 'NAME' -V (with -L slow where they are slow).
 #include "mesoscale/film.h"
+#include "mesoscale/film_direction.h"
 
 #include <catch2/catch.hpp>
 #include <cmath>
@@ -331,5 +332,56 @@ TEST_CASE("samples, fill and roughness outside their range are refused together"
     CHECK(error.problems()[0].id == "film.samples.range");
     CHECK(error.problems()[1].id == "film.fill.range");
     CHECK(error.problems()[2].id == "film.roughness.range");
+  }
+}
+
+TEST_CASE("drag over the direction is held beyond its table, and the mirror image turns its second share",
+          "[film][invariant]") {
+  DragDirection drag;
+  CHECK(drag.empty());
+  CHECK(drag.evaluate(1e5, 0.3).cosine == 0.0);
+  CHECK(drag.evaluate(1e5, 0.3).sine == 0.0);
+  const auto table = [](double last) {
+    return CurveFamily({0.0, 0.5}, {Curve({std::log(1e4), std::log(1e5)}, {0.0, 0.0}),
+                                    Curve({std::log(1e4), std::log(1e5)}, {0.1, last})});
+  };
+  drag = {table(0.2), table(0.3)};
+  CHECK(drag.evaluate(1e5, 0.5).cosine == Approx(0.2));
+  CHECK(drag.evaluate(1e5, 0.25).sine == Approx(0.15));
+  CHECK(drag.evaluate(9e5, 0.9).sine == Approx(0.3));
+  CHECK(drag.evaluate(0.0, 0.5).sine == Approx(0.1));
+  CHECK(drag.evaluate(1e5, -0.5).cosine == drag.evaluate(1e5, 0.5).cosine);
+  CHECK(drag.evaluate(1e5, -0.5).sine == -drag.evaluate(1e5, 0.5).sine);
+}
+
+TEST_CASE("the table of drag over the direction gives the film's friction in directions it was not made from",
+          "[film][slow]") {
+  FilmDirectionSpec spec;
+  spec.speed = speed;
+  spec.fill = FilmSpec{}.fill;
+  const ResinSpec resin;
+  const auto balanced = drag_direction(table1(), law, resin, spec, true),
+             any = drag_direction(table1(), law, resin, spec, false);
+  for (const double pressure : {50e3, 150e3, 300e3}) {
+    const double shear = radians(30.0);
+    // Over a quarter turn on either side of the diagonal the second harmonic has no mean.
+    const auto states = friction_by_direction(
+        bearing(30.0, 64), pressure, speed,
+        {radians(-15.0), radians(15.0), radians(30.0), radians(75.0), radians(105.0), radians(120.0)});
+    double mean = 0.0;
+    for (const std::size_t k : {0, 1, 3, 4}) mean += 0.25 * states[k].friction();
+    const double angle[] = {-15.0, 15.0, 30.0, 75.0, 105.0, 120.0};
+    for (std::size_t k = 0; k < states.size(); ++k) {
+      const auto of = [&](const DragDirection& drag) {
+        const auto share = drag.evaluate(pressure, shear);
+        return mean * (1.0 + share.cosine * std::cos(2.0 * radians(angle[k])) +
+                       share.sine * std::sin(2.0 * radians(angle[k])));
+      };
+      fmt::print(
+          "{:>5g} kPa, {:>4g} deg: film {:.4f}, table along and across {:.4f}, of four directions {:.4f}\n",
+          1e-3 * pressure, angle[k], states[k].friction(), of(balanced), of(any));
+      CHECK(of(balanced) == Approx(states[k].friction()).epsilon(0.03));
+      CHECK(of(any) == Approx(states[k].friction()).epsilon(0.03));
+    }
   }
 }

@@ -1,0 +1,102 @@
+#include "mesoscale/film_direction.h"
+
+#include <array>
+#include <cmath>
+#include <numbers>
+
+#include <fmt/format.h>
+#include <tbb/parallel_for.h>
+
+#include "core/problem.h"
+#include "mesoscale/film.h"
+
+namespace heddle::mesoscale {
+
+namespace {
+
+constexpr double degree = std::numbers::pi / 180.0;
+
+FilmSpec film_of(const FabricGeometry& fabric, const ResinSpec& resin, const FilmDirectionSpec& spec) {
+  constexpr double gas_constant = 8.31446261815324;  // [J/(mol K)]
+  FilmSpec film;
+  film.fluid.consistency =
+      resin.consistency * std::exp(resin.activation_energy / gas_constant *
+                                   (1.0 / spec.temperature - 1.0 / resin.reference_temperature));
+  film.fluid.index = resin.power_index;
+  film.fill = spec.fill.value_or(even_fill(fabric));
+  film.roughness = spec.roughness;
+  film.boundary_friction = spec.boundary_friction;
+  film.samples = spec.samples;
+  return film;
+}
+
+double friction_at(const FilmBearing& bearing, double pressure, double speed, double direction,
+                   double shear) {
+  const FilmState state = bearing.state(pressure, speed, direction);
+  if (!state.converged)
+    throw NumericalError(
+        fmt::format("film: none is found at {:g} kPa, sheared by {:g} deg, sliding at {:g} deg "
+                    "to the warp: {}",
+                    1e-3 * pressure, shear / degree, direction / degree, state.reason));
+  return state.friction();
+}
+
+using Share = DragDirection::Value;
+
+Share share_of_any(const FilmBearing& bearing, double pressure, double speed, double angle) {
+  std::array<double, 4> mu{};
+  for (std::size_t k = 0; k < 4; ++k)
+    mu[k] = friction_at(bearing, pressure, speed, 45.0 * degree * static_cast<double>(k), angle);
+  const double half_sum = 0.5 * (mu[0] + mu[1] + mu[2] + mu[3]);
+  return {(mu[0] - mu[2]) / half_sum, (mu[1] - mu[3]) / half_sum};
+}
+
+Share share_of_balanced(const FilmBearing& bearing, double pressure, double speed, double angle) {
+  const double diagonal = 0.5 * (90.0 * degree - angle);
+  const double along = friction_at(bearing, pressure, speed, diagonal, angle),
+               across = friction_at(bearing, pressure, speed, diagonal + 90.0 * degree, angle);
+  const double share = (along - across) / (along + across);
+  return {share * std::sin(angle), share * std::cos(angle)};
+}
+
+}  // namespace
+
+const std::vector<double>& film_pressures() {
+  static const std::vector<double> pressures{5e3, 20e3, 50e3, 100e3, 150e3, 200e3, 300e3};
+  return pressures;
+}
+
+const std::vector<double>& film_angles() {
+  static const std::vector<double> angles{0.0, 10.0 * degree, 20.0 * degree, 30.0 * degree, 40.0 * degree};
+  return angles;
+}
+
+bool is_balanced(const WeaveSpec& weave) {
+  return weave.pattern == "plain" && weave.own == std::array<OwnTow, 2>{} && !weave.warp_crimp;
+}
+
+DragDirection drag_direction(const FabricGeometry& fabric, const CompactionLaw& law, const ResinSpec& resin,
+                             const FilmDirectionSpec& spec, bool balanced) {
+  const std::vector<double>& pressures = film_pressures();
+  const FilmSpec film = film_of(fabric, resin, spec);
+  std::vector<double> log_pressure;
+  for (const double pressure : pressures) log_pressure.push_back(std::log(pressure));
+  std::vector<Curve> cosine, sine;
+  for (const double angle : film_angles()) {
+    std::vector<double> k_cosine(pressures.size(), 0.0), k_sine(pressures.size(), 0.0);
+    if (!balanced || angle > 0.0) {
+      const FilmBearing bearing(fabric, law, angle, film);
+      tbb::parallel_for(std::size_t{0}, pressures.size(), [&](std::size_t p) {
+        const Share share = balanced ? share_of_balanced(bearing, pressures[p], spec.speed, angle)
+                                     : share_of_any(bearing, pressures[p], spec.speed, angle);
+        k_cosine[p] = share.cosine;
+        k_sine[p] = share.sine;
+      });
+    }
+    cosine.emplace_back(log_pressure, std::move(k_cosine));
+    sine.emplace_back(log_pressure, std::move(k_sine));
+  }
+  return {CurveFamily(film_angles(), std::move(cosine)), CurveFamily(film_angles(), std::move(sine))};
+}
+
+}  // namespace heddle::mesoscale
