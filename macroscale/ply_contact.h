@@ -47,6 +47,7 @@ struct PlyPair {
   double area = 0.0;              ///< half of its cell's material [m^2]
   double rest = 0.0;              ///< distance of the middle surfaces that do not press each other [m]
   std::array<double, 2> local{};  ///< place in the other quad, 0..1
+  bool own = false;               ///< of the sheet with another part of itself
 };
 
 /// Where a point meets a surface, by whatever was looked for.

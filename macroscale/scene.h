@@ -19,6 +19,15 @@
 
 namespace heddle::macroscale {
 
+/// Distance of the middles of two plies that do not press each other [m].
+inline double ply_rest(const mesoscale::FabricProperties& fabric, double nesting) {
+  return fabric.facing.empty() ? fabric.thickness - nesting : fabric.facing.rest;
+}
+/// What each of two faces of plies that press each other gives way.
+inline const Curve& ply_compaction(const mesoscale::FabricProperties& fabric) {
+  return fabric.facing.empty() ? fabric.compaction.curves().front() : fabric.facing.compaction;
+}
+
 /// Everything that does not change while the clock runs: blank, tools, laws, supports and loads.
 struct Scene {
   Blank blank;
@@ -55,7 +64,7 @@ struct Scene {
     return n;
   }
   /// Distance of the middles of two plies that do not press each other [m].
-  double ply_rest() const { return fabric->thickness - nesting; }
+  double ply_rest() const { return macroscale::ply_rest(*fabric, nesting); }
   int unknowns() const { return 3 * blank.nodes() + unknowns_of_tools(); }
   /// Temperature of a blank without `heat`, a time after the punch has touched [K]:
   /// T_tool + (T_blank - T_tool) exp(-rate t).

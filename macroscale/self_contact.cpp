@@ -127,6 +127,7 @@ std::vector<PlyPair> pair_with_itself(const Blank& blank, std::span<const PlyPoi
                         .rest = thickness,
                         .most_rise = most_rise * thickness},
                        x, normals);
+    pairs[k].own = true;
   }
   return pairs;
 }

@@ -63,12 +63,42 @@ std::vector<Tool> binders_of(const StampingSpec& spec, const Shape& whole, doubl
   return tools;
 }
 
-// How far the closed binder presses each face of each ply: the stack fills the gap, or carries the force [m].
-double closed_approach(const StampingSpec& spec, const mesoscale::FabricProperties& fabric, double weight) {
-  if (spec.binder.control == BinderControl::gap)
-    return (stack_thickness(spec.blank, fabric.thickness) - spec.binder.gap) / (2.0 * spec.blank.plies);
-  const double pressure = (spec.process.applied_binder_force() + weight) / binder_face(spec).area;
-  return approach_at(fabric.compaction.curves().front(), pressure);
+// How far the closed binder presses each face of each ply [m]: those at the tools, and those of plies at each
+// other.
+struct ClosedApproach {
+  double tools = 0.0, plies = 0.0;
+};
+
+// The stack fills the gap, or carries the force.
+ClosedApproach closed_approach(const StampingSpec& spec, const mesoscale::FabricProperties& fabric,
+                               double weight) {
+  const Curve &at_tools = fabric.compaction.curves().front(), &between = ply_compaction(fabric);
+  const auto under = [&](double pressure) -> ClosedApproach {
+    return {approach_at(at_tools, pressure), approach_at(between, pressure)};
+  };
+  if (spec.binder.control != BinderControl::gap)
+    return under((spec.process.applied_binder_force() + weight) / binder_face(spec).area);
+  if (fabric.facing.empty()) {  // all faces alike
+    const double each =
+        (stack_thickness(spec.blank, fabric.thickness) - spec.binder.gap) / (2.0 * spec.blank.plies);
+    return {each, each};
+  }
+  // The pressure under which all faces together give way by so much.
+  const int interfaces = spec.blank.plies - 1;
+  const double closing =
+      fabric.thickness + interfaces * ply_rest(fabric, spec.blank.nesting) - spec.binder.gap;
+  const auto given = [&](double pressure) {
+    const ClosedApproach approach = under(pressure);
+    return 2.0 * (approach.tools + interfaces * approach.plies);
+  };
+  double low = 0.0, high = 1.0;
+  constexpr double beyond_any_table = 1e9;  // [Pa]
+  while (given(high) < closing && high < beyond_any_table) high *= 2.0;
+  for (int k = 0; k < 100; ++k) {
+    const double middle = 0.5 * (low + high);
+    (given(middle) < closing ? low : high) = middle;
+  }
+  return under(high);
 }
 
 std::optional<double> friction_coefficient_of(const StampingSpec& spec, Role role) {
@@ -95,7 +125,7 @@ Blank stamping_blank(const StampingSpec& spec, const mesoscale::FabricProperties
     return turned(make_blank(outline_of(blank), blank.spacing, blank.orientation, 0.0, blank.symmetry),
                   blank.turned);
   const double apart =
-      fabric.thickness - blank.nesting - 2.0 * closed_approach(spec, fabric, binder_weight(spec));
+      ply_rest(fabric, blank.nesting) - 2.0 * closed_approach(spec, fabric, binder_weight(spec)).plies;
   std::vector<Blank> plies;
   for (int k = 0; k < blank.plies; ++k) {
     const double of_ply = blank.layup.empty() ? 0.0 : blank.layup[static_cast<std::size_t>(k)];
@@ -120,9 +150,9 @@ Scene stamping_scene(const StampingSpec& spec, const mesoscale::FabricProperties
   const double half = 0.5 * fabric.thickness;
   const TouchingTools tools = touching_tools(spec);
   const double weight = binder_weight(spec);
-  const double approach = closed_approach(spec, fabric, weight);
+  const ClosedApproach approach = closed_approach(spec, fabric, weight);
   const double outer = 0.5 * (spec.blank.plies - 1);  // from the stack's middle to that of its outer plies
-  const double closed = half - approach + outer * (scene.ply_rest() - 2.0 * approach);
+  const double closed = half - approach.tools + outer * (scene.ply_rest() - 2.0 * approach.plies);
   const double at_rest = half + outer * scene.ply_rest();
   scene.tools = {punch_of(press, raised(tools.punch, at_rest)),
                  {Role::die, raised(tools.die, -closed), Motion::fixed, 0.0, 0.0}};

@@ -52,7 +52,8 @@ Vector3d System::velocity_in_row(const StepData& step, const VectorXd& x, int ro
 }
 
 NormalContact System::contact_of_plies(const PlyPair& pair, const VectorXd& x) const {
-  return pair.quad < 0 ? NormalContact{} : ply_contact(compaction_, gap(pair, x), pair.rest);
+  if (pair.quad < 0) return {};
+  return ply_contact(pair.own ? compaction_ : ply_compaction(*scene_.fabric), gap(pair, x), pair.rest);
 }
 
 std::vector<PlyPair> System::pairs_at(const VectorXd& x, bool all) const {

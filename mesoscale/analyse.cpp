@@ -6,6 +6,7 @@
 #include "mesoscale/contact.h"
 #include "mesoscale/film_direction.h"
 #include "mesoscale/forming.h"
+#include "mesoscale/ply_facing.h"
 #include "mesoscale/state.h"
 
 namespace heddle::mesoscale {
@@ -72,6 +73,9 @@ CellResult analyse(const CellSpec& spec) {
   for (std::size_t i = 0; i < 2; ++i) out.bending[i] = constant_in_temperature(models.bending[i].value);
   out.compaction = std::move(contact.compaction);
   out.contact = std::move(contact.contact);
+  if (spec.facing == Facing::shift)
+    out.facing = facing_of_shift(fabric, models.compaction, spec.facing_shift);
+  if (spec.facing == Facing::mean) out.facing = facing_of_all_shifts(fabric, models.compaction);
   if (spec.film)
     out.contact.drag =
         drag_direction(fabric, models.compaction, spec.resin, *spec.film, is_balanced(spec.weave));

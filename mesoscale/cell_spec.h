@@ -85,6 +85,10 @@ struct ResinSpec {
   double reference_temperature = 453.15;  ///< [K]
 };
 
+/// How the tows of plies lie that face each other (ply_facing.h): flat: each face as against a plate; shift:
+/// by the same shift everywhere; mean: anyhow.
+enum class Facing { flat, shift, mean };
+
 /// The film for which friction's dependence on the direction of sliding is worked out (film_direction.h).
 /// SI units.
 struct FilmDirectionSpec {
@@ -135,6 +139,8 @@ struct CellSpec {
   ResinSpec resin;
   FormingSpec forming;
   StackSpec stack;
+  Facing facing = Facing::flat;
+  std::array<double, 2> facing_shift{};        ///< of the upper ply, along warp and weft [m]
   std::optional<FilmDirectionSpec> film = {};  ///< absent: friction is alike in all directions
 };
 

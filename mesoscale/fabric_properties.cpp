@@ -131,6 +131,10 @@ Problems check(const FabricProperties& fabric) {
     require(problems, curve.empty() || curve.y().back() <= 0.0, "fabric.*.range"_family.of("contact"),
             "fabric.contact", curve.empty() ? 0.0 : curve.y().back(),
             "the area fraction must not exceed 1 (its log must be <= 0)");
+  if (!fabric.facing.empty()) {
+    positive(fabric.facing.rest, "ply_facing.rest");
+    check_monotone(problems, fabric.facing.compaction, "ply_facing", "pressure between plies");
+  }
   for (const CurveFamily* family : {&fabric.contact.drag.cosine, &fabric.contact.drag.sine})
     for (const Curve& curve : family->curves())
       for (const double share : curve.y())

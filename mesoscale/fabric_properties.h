@@ -55,6 +55,16 @@ struct ContactArea {
   Value evaluate(double pressure, double shear_angle) const;
 };
 
+/// What two plies that face each other make of the fabric: how near their middles come before they press, and
+/// the pressure from there. Without a table they press each other as each presses a flat plate.
+struct PlyFacing {
+  double rest = 0.0;  ///< distance of the middles at which they touch [m]
+  Curve compaction =
+      {};  ///< P [Pa] against d = (rest - g) / 2 [m], half of the closing for each of the two faces
+
+  bool empty() const { return compaction.empty(); }
+};
+
 /// Where numbers come from: hash of the specification, and how far a finer grid would move them.
 struct Provenance {
   std::string specification;            ///< hash of the resolved cell specification
@@ -77,6 +87,7 @@ struct FabricProperties {
   /// parameter: trellis shear angle [rad]. Zero and flat at d = 0.
   CurveFamily compaction;
   ContactArea contact;
+  PlyFacing facing = {};  ///< empty: as against a flat plate
   Provenance provenance;
 };
 

@@ -74,6 +74,9 @@ std::string describe(const CellSpec& spec) {
   if (f.compaction != CompactionChoice::toll)
     text += fmt::format(";compaction {} {} {}", static_cast<int>(f.compaction), f.gutowski_spring,
                         f.gutowski_available);
+  if (spec.facing != Facing::flat)
+    text += fmt::format(";facing {} {} {}", static_cast<int>(spec.facing), spec.facing_shift[0],
+                        spec.facing_shift[1]);
   if (spec.film)
     text += fmt::format(";film {} {} {} {} {} {}", spec.film->speed, spec.film->temperature,
                         spec.film->fill.value_or(-1.0), spec.film->roughness, spec.film->boundary_friction,

@@ -203,6 +203,26 @@ Problems check_turned_pieces(const Case& a_case) {
 
 /// Plies that nest by half a thickness would have their middles inside each other's faces.
 Problems check_nesting(const mesoscale::CellSpec& cell, const macroscale::BlankSpec& blank) {
+  if (cell.facing != mesoscale::Facing::flat && blank.nesting > 0.0)
+    return {{"blank.nesting.facing"_rule,
+             "blank.nesting",
+             fmt::format("{:g} mm", 1e3 * blank.nesting),
+             "counts nesting twice: cell.facing has how near the plies come",
+             "Leave one of the two out.",
+             "",
+             0,
+             {"cell.facing"}}};
+  const auto& angles = blank.layup;
+  if (cell.facing == mesoscale::Facing::shift &&
+      std::any_of(angles.begin(), angles.end(), [&](double a) { return a != angles.front(); }))
+    return {{"cell.facing.layup"_rule,
+             "cell.facing",
+             "shift",
+             "is one shift for all tows, and the plies of blank.layup are turned against each other",
+             "Take cell.facing: mean: the tows of turned plies meet at every shift.",
+             "",
+             0,
+             {"blank.layup"}}};
   const double most = 0.5 * cell.weave.fabric_thickness;
   if (blank.nesting < most) return {};
   return {{"blank.nesting.thickness"_rule,

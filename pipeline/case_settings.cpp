@@ -163,6 +163,9 @@ mesoscale::CellSpec cell_of(const Settings& settings) {
   cell.resin = resin_of(settings);
   cell.forming = forming_of(settings);
   cell.stack = stack_of(settings);
+  if (settings.is("cell.facing", "shift")) cell.facing = mesoscale::Facing::shift;
+  if (settings.is("cell.facing", "mean")) cell.facing = mesoscale::Facing::mean;
+  if (settings.has("cell.facing_shift")) cell.facing_shift = settings.pair("cell.facing_shift");
   cell.film = film_direction_of(settings);
   return cell;
 }

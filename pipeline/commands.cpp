@@ -69,6 +69,7 @@ void run_cell(const Case& a_case, RunFolder& folder, const Cache& cache, Finding
   folder.write("mesoscale/fabric.json", fabric_json(fabric, in_words(a_case.fabric)));
   folder.write("mesoscale/contact.csv",
                contact_csv(fabric.contact, contact_pressures(), fabric.contact.log_fraction.parameter()));
+  if (!fabric.facing.empty()) folder.write("mesoscale/ply_facing.csv", ply_facing_csv(fabric.facing));
   if (!fabric.contact.drag.empty())
     folder.write("mesoscale/drag_direction.csv", drag_direction_csv(fabric.contact.drag));
   folder.write("mesoscale/picture_frame.csv", picture_frame_csv(fabric));

@@ -97,6 +97,12 @@ std::vector<Key> cell_keys() {
        .help = "Where each ply lies along the warp, one number a ply, for instance [0 mm, 2.7 mm]; absent: on top of each other."},
       {.path = "cell.shift_weft", .type = KeyType::list, .unit = "mm", .presence = optional,
        .range = "(-10000 mm, 10000 mm)", .stage = cell, .help = "The same along the weft."},
+      {.path = "cell.facing", .type = KeyType::choice, .presence = defaulted, .default_text = "flat",
+       .choices = {"flat", "mean", "shift"}, .stage = cell,
+       .help = "How plies of a blank press each other. flat: each as it presses a plate (with blank.nesting); shift: tows shifted by cell.facing_shift; mean: over all shifts, for tows that lie anyhow."},
+      {.path = "cell.facing_shift", .type = KeyType::pair, .unit = "mm", .presence = required,
+       .range = "(-10000 mm, 10000 mm)", .stage = cell, .used_when = "cell.facing=shift",
+       .help = "Of the upper of two plies along warp and weft, for instance [2.7 mm, 0 mm]; [0 mm, 0 mm] is crown on crown."},
   };
 }
 

@@ -233,6 +233,14 @@ std::string contact_csv(const mesoscale::ContactArea& contact, std::span<const d
   return table<ContactRow>(rows, contact_columns);
 }
 
+std::string ply_facing_csv(const mesoscale::PlyFacing& facing) {
+  std::string out = "distance_mm,pressure_kPa\n";
+  for (std::size_t k = 0; k < facing.compaction.x().size(); ++k)
+    out += fmt::format("{},{}\n", shortest(1e3 * (facing.rest - 2.0 * facing.compaction.x()[k])),
+                       shortest(1e-3 * facing.compaction.y()[k]));
+  return out;
+}
+
 std::string drag_direction_csv(const mesoscale::DragDirection& drag) {
   std::string out = "shear_angle_deg,pressure_kPa,cos_2_theta,sin_2_theta,largest_over_across\n";
   for (std::size_t a = 0; a < drag.cosine.parameter().size(); ++a)

@@ -143,6 +143,9 @@ std::string contact_csv(const mesoscale::ContactArea& contact, std::span<const d
 /// across that direction.
 std::string drag_direction_csv(const mesoscale::DragDirection& drag);
 
+/// How two plies press each other: distance of their middles over the pressure.
+std::string ply_facing_csv(const mesoscale::PlyFacing& facing);
+
 // ---- records (JSON)
 // ----------------------------------------------------------------------------------------------
 

@@ -356,6 +356,13 @@ mesoscale::FabricProperties read_fabric(Reader& reader, const Json& root) {
   if (const Json* node = reader.member(root, "", "contact")) {
     fabric.contact.log_fraction = read_family(reader, *node, "contact", contact_keys);
   }
+  if (root.contains("ply_facing")) {
+    const Json& node = root["ply_facing"];
+    reader.get(fabric.facing.rest, node, "ply_facing", "rest_m");
+    if (const Json* curve = reader.member(node, "ply_facing", "compaction"))
+      fabric.facing.compaction = read_curve(reader, *curve, "ply_facing.compaction", compaction_keys);
+    reader.only(node, "ply_facing", {"rest_m", "compaction"});
+  }
   if (root.contains("drag_direction")) {  // where a film was asked for
     const Json& node = root["drag_direction"];
     const auto part = [&](const char* name) {
@@ -368,9 +375,10 @@ mesoscale::FabricProperties read_fabric(Reader& reader, const Json& root) {
   }
   if (const Json* node = reader.member(root, "", "provenance"))
     fabric.provenance = read_provenance(reader, *node);
-  reader.only(root, "",
-              {"areal_density_kg_m2", "pitch_m", "thickness_m", "tension_energy", "shear_stress",
-               "shear_rate", "bending", "compaction", "contact", "drag_direction", "provenance"});
+  reader.only(
+      root, "",
+      {"areal_density_kg_m2", "pitch_m", "thickness_m", "tension_energy", "shear_stress", "shear_rate",
+       "bending", "compaction", "contact", "ply_facing", "drag_direction", "provenance"});
   return fabric;
 }
 
@@ -453,6 +461,9 @@ std::string fabric_json(const mesoscale::FabricProperties& fabric, const std::ve
              {{"specification", fabric.provenance.specification},
               {"unverified", fabric.provenance.unverified},
               {"grid_error", fabric.provenance.grid_error}}}};
+  if (const mesoscale::PlyFacing& facing = fabric.facing; !facing.empty())
+    root["ply_facing"] = {{"rest_m", facing.rest},
+                          {"compaction", curve_json(facing.compaction, compaction_keys)}};
   if (const mesoscale::DragDirection& drag = fabric.contact.drag; !drag.empty())
     root["drag_direction"] = {{"cos_2_theta", family_json(drag.cosine, drag_keys)},
                               {"sin_2_theta", family_json(drag.sine, drag_keys)}};

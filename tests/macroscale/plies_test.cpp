@@ -205,13 +205,13 @@ struct Pressed {
   double spread = 0.0;        ///< of the pressures between plies, about the mean [-]
 };
 
-Pressed press(const std::vector<double>& layup, double force) {
-  const auto fabric = make_fabric({});
+Pressed press(const std::vector<double>& layup, double force,
+              const heddle::mesoscale::FabricProperties& fabric = make_fabric({})) {
   const std::array<double, 2> size{0.06, 0.05};
   Scene scene;
-  scene.blank = stack_of(size, 0.01, layup, fabric.thickness);
   scene.fabric = &fabric;
-  const double half = 0.5 * fabric.thickness * static_cast<double>(layup.size());
+  scene.blank = stack_of(size, 0.01, layup, scene.ply_rest());
+  const double half = 0.5 * (fabric.thickness + scene.ply_rest() * (static_cast<double>(layup.size()) - 1.0));
   scene.tools = {{Role::die, PlaneShape{{0, 0, -half}, {0, 0, 1}}, Motion::fixed, 0.0, 0.0},
                  {Role::binder, PlaneShape{{0, 0, half}, {0, 0, -1}}, Motion::loaded, force, 0.5}};
   scene.held.assign(static_cast<std::size_t>(scene.unknowns()), 0);
@@ -256,6 +256,24 @@ TEST_CASE("a stack between plates carries the force evenly through every ply, an
   WARN("pressures between turned plies: " << 100.0 * turned.spread << " % about the mean; thickness "
                                           << 100.0 * (turned.thickness / (3.0 * alone) - 1.0) << " %");
   CHECK(turned.thickness == Approx(3.0 * alone).epsilon(0.01));
+}
+
+TEST_CASE("plies whose tows face each other by a table of their own rest nearer and give way by that table",
+          "[macroscale][plies][patch]") {
+  const double force = 150.0, pressure = force / (0.06 * 0.05);
+  auto fabric = make_fabric({});
+  const auto softer = make_fabric({.contact_stiffness = 2.5e8});
+  fabric.facing = {0.8 * fabric.thickness, softer.compaction.curves().front()};
+  const double at_plate = approach_at(fabric.compaction.curves().front(), pressure),
+               between = approach_at(fabric.facing.compaction, pressure);
+  CHECK(between > 1.7 * at_plate);
+  for (const std::size_t plies : {std::size_t{2}, std::size_t{3}}) {
+    const Pressed stack = press(std::vector<double>(plies, 0.0), force, fabric);
+    const double apart = fabric.facing.rest - 2.0 * between;
+    CHECK(stack.thickness ==
+          Approx(fabric.thickness - 2.0 * at_plate + static_cast<double>(plies - 1) * apart).epsilon(1e-6));
+    for (const double carried : stack.force) CHECK(carried == Approx(force).epsilon(1e-6));
+  }
 }
 
 namespace {

@@ -1,5 +1,7 @@
 // Plies on one another: how far they sink into each other, and what the stack is made of.
 #include "mesoscale/nesting.h"
+#include "mesoscale/contact.h"
+#include "mesoscale/ply_facing.h"
 
 #include <algorithm>
 #include <catch2/catch.hpp>
@@ -208,4 +210,84 @@ TEST_CASE("the cut through a stack shows every ply where it stands", "[nesting][
   CHECK(low == Approx(-ply.crown()).epsilon(1e-3));
   CHECK(high < stack.height[1] + ply.crown());
   CHECK(high > stack.height[1]);
+}
+
+namespace {
+
+const CompactionLaw fibres{3.2e6, 5.0};
+
+// P [Pa] at a distance of the middles [m].
+double pressure_at(const PlyFacing& facing, double distance) {
+  const double approach = 0.5 * (facing.rest - distance);
+  return approach <= 0.0 ? 0.0 : facing.compaction(approach);
+}
+
+}  // namespace
+
+TEST_CASE("crown on crown two plies press each other as each presses a flat plate", "[nesting][contact]") {
+  const FabricGeometry fabric = table1();
+  const PlyFacing facing = facing_of_shift(fabric, fibres, {0.0, 0.0});
+  const PlateContact plate = plate_contact(fabric, fibres, 0.0);
+  CHECK(facing.rest == Approx(2.0 * unit_cell(fabric, 0.0).crown()).epsilon(1e-14));
+  for (const double approach : {0.05e-3, 0.1e-3, 0.2e-3, 0.3e-3}) {
+    CAPTURE(approach);
+    CHECK(facing.compaction(approach) == Approx(plate.pressure(approach)).epsilon(0.01));
+  }
+}
+
+TEST_CASE(
+    "shifted plies rest where their tows touch, begin softer there, and press alike however one looks at "
+    "them",
+    "[nesting][contact]") {
+  const FabricGeometry fabric = table1();
+  const UnitCell ply = unit_cell(fabric, 0.0);
+  const PlyFacing crowns = facing_of_shift(fabric, fibres, {0.0, 0.0});
+  const double p = ply.tow[0].spacing;
+  for (const PlyShift& shift :
+       {PlyShift{0.5 * p, 0.5 * p}, PlyShift{0.3 * p, 0.0}, PlyShift{0.1 * p, 0.4 * p}}) {
+    CAPTURE(shift[0] / p, shift[1] / p);
+    const PlyFacing facing = facing_of_shift(fabric, fibres, shift);
+    CHECK(facing.rest == closest_approach(ply, shift));
+    CHECK(facing.rest < crowns.rest);
+    CHECK(facing.compaction.y().front() == 0.0);
+    // The other ply's view, warp and weft exchanged, and a shift by a repeat.
+    for (const PlyShift& same : {PlyShift{-shift[0], -shift[1]}, PlyShift{shift[1], shift[0]},
+                                 PlyShift{shift[0] + 2.0 * p, shift[1] - 2.0 * p}}) {
+      const PlyFacing other = facing_of_shift(fabric, fibres, same);
+      CHECK(other.rest == Approx(facing.rest).epsilon(1e-9));
+      for (const double distance : {0.8 * facing.rest, 0.6 * facing.rest})
+        CHECK(pressure_at(other, distance) == Approx(pressure_at(facing, distance)).epsilon(0.01));
+    }
+    // At one pressure the stack is thinner than crown on crown.
+    const auto distance_at = [](const PlyFacing& f, double pressure) {
+      double near = 0.0, far = f.rest;
+      for (int k = 0; k < 60; ++k) {
+        const double middle = 0.5 * (near + far);
+        (pressure_at(f, middle) > pressure ? near : far) = middle;
+      }
+      return near;
+    };
+    for (const double pressure : {1e3, 1e4, 1e5})
+      CHECK(distance_at(facing, pressure) < distance_at(crowns, pressure));
+  }
+}
+
+TEST_CASE("plies that lie anyhow press each other by the mean over all shifts", "[nesting][contact]") {
+  const FabricGeometry fabric = table1();
+  const PlyFacing mean = facing_of_all_shifts(fabric, fibres);
+  const UnitCell ply = unit_cell(fabric, 0.0);
+  const std::array<double, 2> size = ply.size();
+  CHECK(mean.rest == Approx(2.0 * ply.crown()).epsilon(1e-14));
+  constexpr int n = 8;
+  std::vector<PlyFacing> shifted;
+  for (int i = 0; i < n; ++i)
+    for (int j = 0; j < n; ++j)
+      shifted.push_back(
+          facing_of_shift(fabric, fibres, {(i + 0.37) / n * size[0], (j + 0.61) / n * size[1]}));
+  for (const double distance : {0.8e-3, 1.0e-3, 1.2e-3}) {
+    double sum = 0.0;
+    for (const PlyFacing& facing : shifted) sum += pressure_at(facing, distance) / (n * n);
+    CAPTURE(distance);
+    CHECK(pressure_at(mean, distance) == Approx(sum).epsilon(0.02));
+  }
 }

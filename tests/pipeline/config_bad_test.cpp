@@ -47,6 +47,8 @@ const std::vector<BadFile> bad_files{
     {"compacted_both_ways", {{"cell.state.compacted", 4}}},
     {"compacted_thinner_than_its_glass_and_resin", {{"cell.thickness.room", 4}}},
     {"compacted_until_no_void_is_left", {{"cell.pressure.room", 4}}},
+    {"plies_that_nest_twice", {{"blank.nesting.facing", 8}}},
+    {"plies_turned_at_one_shift", {{"cell.facing.layup", 4}}},
     {"plies_with_temperatures", {{"blank.plies.thermal", 8}}},
     {"quarter_of_what_is_not_symmetric",
      {{"blank.symmetry.orientation", 10},
