@@ -146,7 +146,7 @@ Fault fault_of(const System& system, const StepData& step, const State& end, boo
     }
   for (std::size_t k = 0; k < step.pairs.size(); ++k)
     if (const double approach = system.contact_of_plies(step.pairs[k], end.x).approach;
-        approach > 0.5 * scene.fabric->thickness) {
+        approach > 0.5 * step.pairs[k].rest) {
       const PlyPoint& point = system.ply_points()[k];
       const bool folded = point.against == scene.blank.ply_of_quad(point.quad);
       if (folded && may_cross) continue;

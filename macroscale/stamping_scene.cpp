@@ -83,22 +83,23 @@ ClosedApproach closed_approach(const StampingSpec& spec, const mesoscale::Fabric
         (stack_thickness(spec.blank, fabric.thickness) - spec.binder.gap) / (2.0 * spec.blank.plies);
     return {each, each};
   }
-  // The pressure under which all faces together give way by so much.
+  // The pressure under which all faces together give way by so much. What no pressure of the tables gives, a
+  // gap wider than the stack or narrower than all tables, falls on all faces alike.
   const int interfaces = spec.blank.plies - 1;
   const double closing =
       fabric.thickness + interfaces * ply_rest(fabric, spec.blank.nesting) - spec.binder.gap;
-  const auto given = [&](double pressure) {
-    const ClosedApproach approach = under(pressure);
+  const auto given = [&](const ClosedApproach& approach) {
     return 2.0 * (approach.tools + interfaces * approach.plies);
   };
-  double low = 0.0, high = 1.0;
   constexpr double beyond_any_table = 1e9;  // [Pa]
-  while (given(high) < closing && high < beyond_any_table) high *= 2.0;
+  double low = 0.0, high = beyond_any_table;
   for (int k = 0; k < 100; ++k) {
     const double middle = 0.5 * (low + high);
-    (given(middle) < closing ? low : high) = middle;
+    (given(under(middle)) < closing ? low : high) = middle;
   }
-  return under(high);
+  const ClosedApproach found = under(low);
+  const double rest = (closing - given(found)) / (2.0 * spec.blank.plies);
+  return {found.tools + rest, found.plies + rest};
 }
 
 std::optional<double> friction_coefficient_of(const StampingSpec& spec, Role role) {

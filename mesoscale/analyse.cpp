@@ -76,10 +76,11 @@ CellResult analyse(const CellSpec& spec) {
   if (spec.facing == Facing::shift)
     out.facing = facing_of_shift(fabric, models.compaction, spec.facing_shift);
   if (spec.facing == Facing::mean) out.facing = facing_of_all_shifts(fabric, models.compaction);
-  if (spec.film)
-    out.contact.drag =
-        drag_direction(fabric, models.compaction, spec.resin, *spec.film, is_balanced(spec.weave));
+  if (spec.film) out.contact.drag = drag_direction(fabric, models.compaction, spec.resin, *spec.film);
   out.provenance = {specification_hash(spec), priors(spec.forming), contact.grid_error};
+  if (spec.film)
+    for (const char* name : {"film.roughness", "film.boundary_friction"})
+      out.provenance.unverified.push_back(name);
   result.summary.locking_angle = locking_angle(out.shear_stress);
 
   if (Problems problems = check(out); !problems.empty())

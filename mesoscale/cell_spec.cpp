@@ -108,9 +108,9 @@ void check_film(Problems& problems, const FilmDirectionSpec& f) {
        "must lie between 0 and 2", "The default is 0.2."},
   };
   for (const Bound& bound : bounds) add_if_broken(problems, bound);
-  if (f.samples != 32 && f.samples != 64 && f.samples != 128)
+  if (f.samples != 64 && f.samples != 128)
     problems.push_back({"film.samples.range"_rule, "film.samples", fmt::format("{}", f.samples),
-                        "must be 32, 64 or 128", "64 is within 3 % of 128 (docs/theory/film.md)."});
+                        "must be 64 or 128", "64 is within 3 % of 128 (docs/theory/film.md)."});
 }
 
 void check_forming(Problems& problems, const FormingSpec& f) {
@@ -420,7 +420,31 @@ Problems check(const CellSpec& spec) {
   check_stack(problems, spec.stack);
   check_resin(problems, spec.resin);
   check_forming(problems, spec.forming);
-  if (spec.film) check_film(problems, *spec.film);
+  if (spec.film) {
+    check_film(problems, *spec.film);
+    const WeaveSpec& weave = spec.weave;
+    if (weave.pattern != "plain" || weave.own != std::array<OwnTow, 2>{} || weave.warp_crimp)
+      problems.push_back(
+          {"film.weave"_rule,
+           "film",
+           "",
+           "is worked out for a plain weave of like warp and weft alone",
+           "Leave the block out: other weaves drag otherwise on either face and when sheared the other "
+           "way.",
+           "",
+           0,
+           {"weave"}});
+  }
+  if (spec.facing != Facing::flat && spec.state != CellState::as_woven)
+    problems.push_back(
+        {"cell.facing.state"_rule,
+         "cell.facing",
+         "",
+         "is of the fabric as woven, and cell.state is another",
+         "Leave one of the two out: pressed plies are as thick as their mass says, however they lie.",
+         "",
+         0,
+         {"cell.state"}});
   // States and packing need a geometry, and so sound numbers.
   if (problems.empty()) problems = check_state(spec);
   if (problems.empty()) check_packing(problems, spec);

@@ -97,7 +97,7 @@ struct FilmDirectionSpec {
   std::optional<double> fill = {};  ///< share of the gap that resin fills [-]; absent: spread evenly (film.h)
   double roughness = 9.25e-6;       ///< film left where a tow is touched [m]; a fibre's radius, prior
   double boundary_friction = 0.2;   ///< of touching fibres [-], prior
-  int samples = 64;                 ///< along each edge of the repeat: 32, 64 or 128
+  int samples = 64;                 ///< along each edge of the repeat: 64 or 128
 };
 
 /// Law of the tows' compaction (compaction.h). van_wyk is the network of exponent 3.

@@ -1,6 +1,5 @@
 #include "mesoscale/film_direction.h"
 
-#include <array>
 #include <cmath>
 #include <numbers>
 
@@ -41,24 +40,6 @@ double friction_at(const FilmBearing& bearing, double pressure, double speed, do
   return state.friction();
 }
 
-using Share = DragDirection::Value;
-
-Share share_of_any(const FilmBearing& bearing, double pressure, double speed, double angle) {
-  std::array<double, 4> mu{};
-  for (std::size_t k = 0; k < 4; ++k)
-    mu[k] = friction_at(bearing, pressure, speed, 45.0 * degree * static_cast<double>(k), angle);
-  const double half_sum = 0.5 * (mu[0] + mu[1] + mu[2] + mu[3]);
-  return {(mu[0] - mu[2]) / half_sum, (mu[1] - mu[3]) / half_sum};
-}
-
-Share share_of_balanced(const FilmBearing& bearing, double pressure, double speed, double angle) {
-  const double diagonal = 0.5 * (90.0 * degree - angle);
-  const double along = friction_at(bearing, pressure, speed, diagonal, angle),
-               across = friction_at(bearing, pressure, speed, diagonal + 90.0 * degree, angle);
-  const double share = (along - across) / (along + across);
-  return {share * std::sin(angle), share * std::cos(angle)};
-}
-
 }  // namespace
 
 const std::vector<double>& film_pressures() {
@@ -71,12 +52,8 @@ const std::vector<double>& film_angles() {
   return angles;
 }
 
-bool is_balanced(const WeaveSpec& weave) {
-  return weave.pattern == "plain" && weave.own == std::array<OwnTow, 2>{} && !weave.warp_crimp;
-}
-
 DragDirection drag_direction(const FabricGeometry& fabric, const CompactionLaw& law, const ResinSpec& resin,
-                             const FilmDirectionSpec& spec, bool balanced) {
+                             const FilmDirectionSpec& spec) {
   const std::vector<double>& pressures = film_pressures();
   const FilmSpec film = film_of(fabric, resin, spec);
   std::vector<double> log_pressure;
@@ -84,13 +61,17 @@ DragDirection drag_direction(const FabricGeometry& fabric, const CompactionLaw& 
   std::vector<Curve> cosine, sine;
   for (const double angle : film_angles()) {
     std::vector<double> k_cosine(pressures.size(), 0.0), k_sine(pressures.size(), 0.0);
-    if (!balanced || angle > 0.0) {
+    if (angle > 0.0) {
       const FilmBearing bearing(fabric, law, angle, film);
+      const double diagonal = 0.5 * (90.0 * degree - angle);
       tbb::parallel_for(std::size_t{0}, pressures.size(), [&](std::size_t p) {
-        const Share share = balanced ? share_of_balanced(bearing, pressures[p], spec.speed, angle)
-                                     : share_of_any(bearing, pressures[p], spec.speed, angle);
-        k_cosine[p] = share.cosine;
-        k_sine[p] = share.sine;
+        const auto mu = [&](double direction) {
+          return friction_at(bearing, pressures[p], spec.speed, direction, angle);
+        };
+        const double along = mu(diagonal), across = mu(diagonal + 90.0 * degree);
+        const double share = (along - across) / (along + across);
+        k_cosine[p] = share * std::sin(angle);
+        k_sine[p] = share * std::cos(angle);
       });
     }
     cosine.emplace_back(log_pressure, std::move(k_cosine));

@@ -12,15 +12,13 @@ namespace heddle::mesoscale {
 ///
 ///     mu = mean (1 + K_c cos 2 theta + K_s sin 2 theta)
 ///
-/// theta against the warp, from the directions 0, 45, 90 and 135 deg. Of a balanced plain weave sheared by
-/// gamma it is K = D (sin gamma, cos gamma): largest along the long diagonal of the trellis, and nothing
-/// without shear; then along and across that diagonal are enough.
-/// @param balanced  warp and weft are alike and cross at every turn
+/// theta against the warp. Of a balanced plain weave sheared by gamma it is K = D (sin gamma, cos gamma), D
+/// from mu along and across the long diagonal of the trellis, D = (mu_along - mu_across) / (mu_along +
+/// mu_across): nothing without shear, the same on both faces, and mirrored with the fabric. Other weaves have
+/// none of these symmetries.
 /// @throws NumericalError  where a film is not found (names angle, pressure and direction)
 DragDirection drag_direction(const FabricGeometry& fabric, const CompactionLaw& law, const ResinSpec& resin,
-                             const FilmDirectionSpec& spec, bool balanced);
-/// Of a specification: plain, and no number of one direction alone.
-bool is_balanced(const WeaveSpec& weave);
+                             const FilmDirectionSpec& spec);
 
 /// Where the table is taken: nominal pressures [Pa] and trellis angles [rad].
 const std::vector<double>& film_pressures();

@@ -14,7 +14,9 @@ namespace heddle::mesoscale {
 
 namespace {
 
-constexpr int edge_samples = 160;               // along each edge of the repeat
+constexpr int pitch_samples = 80;  // along each edge of a pitch
+// Shifts of the mean: a lattice of Fibonacci numbers, even in both directions.
+constexpr int mean_shifts = 233, mean_step = 144;
 constexpr int depth_bins = 1000;                // of the depth of a face, over a ply's thickness
 constexpr int table_points = 128;               // of the table, even in the closing, from 0
 constexpr double highest_table_pressure = 6e6;  // [Pa], as the tables against a plate
@@ -57,44 +59,18 @@ void add_depth(std::vector<double>& share, double step, double depth, double are
   share[k + 1] += area * (at - static_cast<double>(k));
 }
 
-template <class Visit>
-void over_repeat(const UnitCell& cell, const Visit& visit) {
-  const std::array<double, 2> size = cell.size();
-  for (int j = 0; j < edge_samples; ++j)
-    for (int i = 0; i < edge_samples; ++i)
-      visit((i + 0.5) / edge_samples * size[0], (j + 0.5) / edge_samples * size[1]);
-}
-
-constexpr double sample_area = 1.0 / (static_cast<double>(edge_samples) * edge_samples);
-
 Depths depths_at_shift(const UnitCell& cell, const PlyShift& shift) {
+  const std::array<double, 2> size = cell.size();
+  const int along_warp = pitch_samples * cell.weave.wefts, along_weft = pitch_samples * cell.weave.warps;
+  const double area = 1.0 / (static_cast<double>(along_warp) * along_weft);
   Depths depths{2.0 * cell.crown() / depth_bins, {}};
-  over_repeat(cell, [&](double xi, double eta) {
-    const FaceSample lower = upper_face_at(cell, xi, eta),
-                     upper = lower_face_at(cell, xi - shift[0], eta - shift[1]);
-    if (lower && upper)
-      add_depth(depths.share[lower->tow][upper->tow], depths.step, lower->depth + upper->depth, sample_area);
-  });
-  return depths;
-}
-
-Depths depths_of_all_shifts(const UnitCell& cell) {
-  Depths depths{2.0 * cell.crown() / depth_bins, {}};
-  std::array<std::array<std::vector<double>, 2>, 2> face;  // {upper face, lower face} by tow
-  over_repeat(cell, [&](double xi, double eta) {
-    if (const FaceSample f = upper_face_at(cell, xi, eta))
-      add_depth(face[0][f->tow], depths.step, f->depth, sample_area);
-    if (const FaceSample f = lower_face_at(cell, xi, eta))
-      add_depth(face[1][f->tow], depths.step, f->depth, sample_area);
-  });
-  for (std::size_t a = 0; a < 2; ++a)
-    for (std::size_t b = 0; b < 2; ++b) {
-      const std::vector<double>&lower = face[0][a], &upper = face[1][b];
-      std::vector<double>& sum = depths.share[a][b];
-      if (lower.empty() || upper.empty()) continue;
-      sum.assign(lower.size() + upper.size(), 0.0);
-      for (std::size_t i = 0; i < lower.size(); ++i)
-        for (std::size_t k = 0; k < upper.size(); ++k) sum[i + k] += lower[i] * upper[k];
+  for (int j = 0; j < along_weft; ++j)
+    for (int i = 0; i < along_warp; ++i) {
+      const double xi = (i + 0.5) / along_warp * size[0], eta = (j + 0.5) / along_weft * size[1];
+      const FaceSample lower = upper_face_at(cell, xi, eta),
+                       upper = lower_face_at(cell, xi - shift[0], eta - shift[1]);
+      if (lower && upper)
+        add_depth(depths.share[lower->tow][upper->tow], depths.step, lower->depth + upper->depth, area);
     }
   return depths;
 }
@@ -159,20 +135,22 @@ class Pressing {
   std::vector<PairSqueeze> pair_;  // 2 a + b
 };
 
-PlyFacing table_of(const Pressing& pressing, double thickness, double rest) {
+// A table from the closing at which the plies touch to that of the highest pressure.
+template <class Pressure>
+PlyFacing table_of(const Pressure& pressure_at, double thickness, double rest, double deepest) {
   const double start = thickness - rest;
-  double low = start, high = pressing.deepest();
-  if (!(pressing.pressure(high) > highest_table_pressure))
+  double low = start, high = deepest;
+  if (!(pressure_at(high) > highest_table_pressure))
     throw NumericalError("plies: packed tows do not carry the highest pressure of the table");
-  for (int k = 0; k < 60; ++k) {
+  for (int k = 0; k < 40; ++k) {
     const double middle = 0.5 * (low + high);
-    (pressing.pressure(middle) < highest_table_pressure ? low : high) = middle;
+    (pressure_at(middle) < highest_table_pressure ? low : high) = middle;
   }
   std::vector<double> approach(table_points), pressure(table_points);
   tbb::parallel_for(0, table_points, [&](int k) {
     const double closing = (high - start) * k / (table_points - 1);
     approach[k] = 0.5 * closing;
-    pressure[k] = k == 0 ? 0.0 : pressing.pressure(start + closing);
+    pressure[k] = k == 0 ? 0.0 : pressure_at(start + closing);
   });
   return {rest, Curve(std::move(approach), std::move(pressure))};
 }
@@ -181,13 +159,28 @@ PlyFacing table_of(const Pressing& pressing, double thickness, double rest) {
 
 PlyFacing facing_of_shift(const FabricGeometry& fabric, const CompactionLaw& law, const PlyShift& shift) {
   const UnitCell cell = unit_cell(fabric, 0.0);
-  return table_of(Pressing(fabric, law, depths_at_shift(cell, shift)), 2.0 * cell.crown(),
-                  closest_approach(cell, shift));
+  const Pressing pressing(fabric, law, depths_at_shift(cell, shift));
+  return table_of([&](double closing) { return pressing.pressure(closing); }, 2.0 * cell.crown(),
+                  closest_approach(cell, shift), pressing.deepest());
 }
 
 PlyFacing facing_of_all_shifts(const FabricGeometry& fabric, const CompactionLaw& law) {
   const UnitCell cell = unit_cell(fabric, 0.0);
-  return table_of(Pressing(fabric, law, depths_of_all_shifts(cell)), 2.0 * cell.crown(), 2.0 * cell.crown());
+  const std::array<double, 2> size = cell.size();
+  std::vector<std::optional<Pressing>> shifted(mean_shifts);
+  tbb::parallel_for(0, mean_shifts, [&](int k) {
+    const PlyShift shift{(k + 0.5) / mean_shifts * size[0],
+                         (k * mean_step % mean_shifts + 0.5) / mean_shifts * size[1]};
+    shifted[k].emplace(fabric, law, depths_at_shift(cell, shift));
+  });
+  double deepest = 1e300;
+  for (const auto& pressing : shifted) deepest = std::min(deepest, pressing->deepest());
+  const auto mean = [&](double closing) {
+    double sum = 0.0;
+    for (const auto& pressing : shifted) sum += pressing->pressure(closing) / mean_shifts;
+    return sum;
+  };
+  return table_of(mean, 2.0 * cell.crown(), 2.0 * cell.crown(), deepest);
 }
 
 }  // namespace heddle::mesoscale

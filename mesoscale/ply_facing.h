@@ -22,9 +22,9 @@ namespace heddle::mesoscale {
 /// One ply shifted against the other. Rest: where the first tows touch (closest_approach).
 PlyFacing facing_of_shift(const FabricGeometry& fabric, const CompactionLaw& law, const PlyShift& shift);
 
-/// Mean over all shifts, at one distance of the middles: what plies have whose tows lie anyhow against each
-/// other. Heights of the two faces are then independent, so it holds for plies turned by any angle as well.
-/// Rest: crown on crown.
+/// Mean over all shifts (a lattice of them over the repeat), at one distance of the middles: what plies have
+/// whose tows lie anyhow against each other. Heights of the two faces are then independent, so turned plies
+/// take it as well. Rest: crown on crown.
 PlyFacing facing_of_all_shifts(const FabricGeometry& fabric, const CompactionLaw& law);
 
 }  // namespace heddle::mesoscale

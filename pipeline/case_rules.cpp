@@ -135,9 +135,18 @@ Problems check_friction(const FrictionSpec& spec, const ReadConfig& config) {
 /// The film of the unit cell is what the effect's form takes.
 Problems check_film_direction(const Case& a_case) {
   const auto& orientation = a_case.friction->model.effects.orientation;
-  if (!orientation || orientation->form != friction::Orientation::Form::film ||
-      (a_case.cell && a_case.cell->film))
-    return {};
+  const bool asked = orientation && orientation->form == friction::Orientation::Form::film;
+  const bool there = a_case.cell && a_case.cell->film;
+  if (there && !a_case.settings.is("resin.rheology", "power_law"))
+    return {{"film.rheology"_rule,
+             "film",
+             "",
+             "flows by the power law, and resin.rheology is another",
+             "Leave one of the two out.",
+             "",
+             0,
+             {"resin.rheology"}}};
+  if (!asked || there) return {};
   return {{"effects.orientation.form.film"_rule,
            "effects.orientation.form",
            "film",
@@ -294,6 +303,16 @@ Problems check_voxels(const Case& a_case, const ReadConfig& config) {
 /// not.
 Problems check_given_fabric(const Case& a_case) {
   const mesoscale::CellSpec& cell = *a_case.cell;
+  if (!a_case.fabric.compaction.empty() && cell.facing != mesoscale::Facing::flat)
+    return {{"cell.facing.compaction"_rule,
+             "cell.facing",
+             "",
+             "takes the compaction of the weave's tows, and fabric.compaction.file replaces it at the tools "
+             "alone",
+             "Leave one of the two out.",
+             "",
+             0,
+             {"fabric.compaction.file"}}};
   if (!a_case.fabric.compaction.empty() && cell.state != mesoscale::CellState::as_woven)
     return {{"fabric.compaction.file.state"_rule,
              "fabric.compaction.file",

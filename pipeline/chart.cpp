@@ -76,6 +76,23 @@ Ruler ruler(const Axis& axis, const Values& columns, Range pixels, int wanted, E
   return out;
 }
 
+/// An abscissa whose numbers stand clear of each other.
+Ruler abscissa(const Axis& axis, const Values& columns, Range pixels) {
+  constexpr double character = 7.0, clear = 8.0;  // [px]
+  for (int wanted = 7;; --wanted) {
+    Ruler out = ruler(axis, columns, pixels, wanted, Ends::data);
+    if (axis.scale == Scale::logarithmic || wanted == 1) return out;
+    bool crowded = false;
+    for (std::size_t k = 1; k < out.ticks.size(); ++k) {
+      const auto letters =
+          static_cast<double>(out.text(out.ticks[k - 1]).size() + out.text(out.ticks[k]).size());
+      crowded =
+          crowded || out.at(out.ticks[k]) - out.at(out.ticks[k - 1]) < 0.5 * character * letters + clear;
+    }
+    if (!crowded) return out;
+  }
+}
+
 std::string title(const Axis& axis) {
   return axis.unit.empty() ? axis.quantity : fmt::format("{} ({})", axis.quantity, axis.unit);
 }
@@ -168,7 +185,7 @@ Canvas draw(const LineChart& chart) {
     x_columns.push_back(&ribbon.x);
     y_columns.insert(y_columns.end(), {&ribbon.low, &ribbon.high});
   }
-  const Ruler x = ruler(chart.x, x_columns, {frame.left, frame.right}, 7, Ends::data);
+  const Ruler x = abscissa(chart.x, x_columns, {frame.left, frame.right});
   const int rows = std::max(2, static_cast<int>((frame.bottom - frame.top) / 52.0));
   const Ruler y = ruler(chart.y, y_columns, {frame.bottom, frame.top}, rows, Ends::rounded);
   for (const Ribbon& ribbon : chart.ribbons) {

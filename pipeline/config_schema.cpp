@@ -245,7 +245,7 @@ std::vector<Key> film_keys() {
       {.path = "film.boundary_friction", .type = KeyType::quantity, .presence = defaulted, .default_text = "0.2",
        .range = "[0, 2]", .help = "Of touching fibres; prior."},
       {.path = "film.samples", .type = KeyType::integer, .presence = defaulted, .default_text = "64",
-       .range = "[32, 128]", .help = "Along each edge of the repeat: 32, 64 or 128."},
+       .range = "[64, 128]", .help = "Along each edge of the repeat: 64 or 128."},
   };
   for (Key& key : keys) {
     key.stage = Stage::cell;

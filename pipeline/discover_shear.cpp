@@ -105,7 +105,10 @@ int discover_shear(const DiscoverOptions& options) {
           "Give the case a weave, as configs/unit_cell.yaml has it.", options.run.file.string()}});
   const std::vector<ShearCurve> curves =
       parse_shear_tests(read_text_file(options.data), options.data.filename().string());
-  const mesoscale::FabricProperties fabric = analyse_cell(*a_case.cell, a_case.fabric).fabric;
+  mesoscale::CellSpec cell = *a_case.cell;
+  cell.film.reset();  // shear alone is asked for
+  cell.facing = mesoscale::Facing::flat;
+  const mesoscale::FabricProperties fabric = analyse_cell(cell, a_case.fabric).fabric;
   const std::vector<ShearGap> gaps = shear_gaps(curves, fabric);
   RunFolder folder(
       a_case,

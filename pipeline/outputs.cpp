@@ -242,10 +242,11 @@ std::string ply_facing_csv(const mesoscale::PlyFacing& facing) {
 }
 
 std::string drag_direction_csv(const mesoscale::DragDirection& drag) {
-  std::string out = "shear_angle_deg,pressure_kPa,cos_2_theta,sin_2_theta,largest_over_across\n";
+  std::string out = "shear_angle_deg,pressure_kPa,cos_2_theta,sin_2_theta,along_over_across\n";
   for (std::size_t a = 0; a < drag.cosine.parameter().size(); ++a)
     for (std::size_t p = 0; p < drag.cosine.curves()[a].x().size(); ++p) {
-      const double c = drag.cosine.curves()[a].y()[p], s = drag.sine.curves()[a].y()[p], k = std::hypot(c, s);
+      const double c = drag.cosine.curves()[a].y()[p], s = drag.sine.curves()[a].y()[p];
+      const double angle = drag.cosine.parameter()[a], k = c * std::sin(angle) + s * std::cos(angle);
       out += fmt::format("{},{},{},{},{}\n", shortest(degrees * drag.cosine.parameter()[a]),
                          shortest(1e-3 * std::exp(drag.cosine.curves()[a].x()[p])), shortest(c), shortest(s),
                          shortest((1.0 + k) / (1.0 - k)));

@@ -139,8 +139,7 @@ std::string contact_csv(const mesoscale::ContactArea& contact, std::span<const d
                         std::span<const double> shear_angles);
 
 /// What the film under the sheared fabric makes of friction by direction, at the pressures and angles of its
-/// table. One row a pair, angles outermost: K_c, K_s, and how much more it drags where it drags most than
-/// across that direction.
+/// table. One row a pair, angles outermost: K_c, K_s, and mu along over mu across the long diagonal.
 std::string drag_direction_csv(const mesoscale::DragDirection& drag);
 
 /// How two plies press each other: distance of their middles over the pressure.

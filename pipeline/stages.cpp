@@ -55,6 +55,8 @@ mesoscale::FabricProperties pulled_fabric(const Case& a_case, const mesoscale::F
   const bool compacted = cell.state == mesoscale::CellState::compacted;
   if (fabric && !compacted && cell.weave == a_case.friction->calibration_weave) return *fabric;
   cell.weave = a_case.friction->calibration_weave;
+  cell.film.reset();  // the area alone is asked for
+  cell.facing = mesoscale::Facing::flat;
   // Somebody's thickness or pressure is not that of the fabric in the rig.
   if (compacted) cell.state = mesoscale::CellState::as_woven;
   return mesoscale::analyse(cell).fabric;

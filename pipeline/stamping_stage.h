@@ -14,7 +14,7 @@ namespace heddle::pipeline {
 struct StampingStageOptions {
   StageInputs inputs;                         ///< of the stage, for checkpoints and cache
   std::optional<StampingRecord> resume = {};  ///< where to go on
-  double checkpoint_interval = 10.0;          ///< longest wall time between two checkpoints [s]; 0: after each step
+  double checkpoint_interval = 10.0;          ///< wall time after which one is due [s]; 0: after each step
   std::function<bool()> stop = {};            ///< asked between Newton iterations
   bool quiet = false;
 };

@@ -33,15 +33,15 @@ double of_place(const StudiedStamping& run, double ShearPlace::*member) {
 }
 
 constexpr std::array shown{
-    Shown{"Peak punch force", "N", "Peak punch force.",
+    Shown{"Peak force", "N", "Peak punch force.",
           [](const StudiedStamping& run) { return run.peak()->force; }},
-    Shown{"Its grid error", "N", "Estimated grid error of the force, from a companion on twice the spacing.",
+    Shown{"Grid error", "N", "Estimated grid error of the force, from a companion on twice the spacing.",
           [](const StudiedStamping& run) { return run.grid_error; }},
     Shown{"Largest shear", "°", "Largest shear angle when the force is largest.",
           [](const StudiedStamping& run) { return degrees * run.peak()->shear; }},
     Shown{"Draw-in", "mm", "Largest draw-in when the force is largest.",
           [](const StudiedStamping& run) { return 1e3 * run.peak()->draw_in; }},
-    Shown{"Place of it", "mm",
+    Shown{"Its place", "mm",
           "Where shear is largest at the end: distance from the punch's axis in the flat blank. Nodes of the "
           "grid: it jumps by a spacing.",
           [](const StudiedStamping& run) { return 1e3 * of_place(run, &ShearPlace::flat_radius); }},
@@ -50,7 +50,7 @@ constexpr std::array shown{
     Shown{"Shear, level", "°",
           "The same where the blank has sunk by less than 2 % of the stroke: on the die's face.",
           [](const StudiedStamping& run) { return degrees * of_place(run, &ShearPlace::level_rms); }},
-    Shown{"Energy residual", "%", "What the energy ledger leaves over.",
+    Shown{"Residual", "%", "What the energy ledger leaves over.",
           [](const StudiedStamping& run) { return 100.0 * run.energy_residual_max; }}};
 
 /// The number of a value in its key's unit; not one for a word.
@@ -87,7 +87,9 @@ LineChart chart_of(const Variation& variation, const Shown& result) {
   chart.y = {result.quantity, result.unit};
   chart.width = half_width;
   chart.height = 300.0;
-  chart.label_room = variation.keys.size() > 1 ? 150.0 : 20.0;
+  std::size_t longest = 0;
+  for (const StudiedStamping* run : variation.runs) longest = std::max(longest, variation.name(*run).size());
+  chart.label_room = 20.0 + 7.0 * static_cast<double>(longest);
   double low = std::numeric_limits<double>::infinity(), high = 0.0;
   for (const StudiedStamping* run : variation.runs) {
     const double x = number_of(variation.value(*run, 0));

@@ -12,6 +12,7 @@
 #include "macroscale/checkpoint.h"
 #include "macroscale/ply_state.h"
 #include "macroscale/stamping.h"
+#include "macroscale/stamping_scene.h"
 #include "tests/macroscale/kept_stamping.h"
 #include "tests/macroscale/random_stampings.h"
 #include "tests/macroscale/sample_fabric.h"
@@ -69,6 +70,31 @@ TEST_CASE(
 
   const tbb::global_control one_thread(tbb::global_control::max_allowed_parallelism, 1);
   CHECK((run(spec).checkpoints.back() == whole.checkpoints.back()));
+}
+
+TEST_CASE("a binder at a gap stands that far off the die, however the plies between face each other",
+          "[macroscale][plies][stamping]") {
+  StampingSpec spec = small_case({0.0, 0.0});
+  spec.binder.control = BinderControl::gap;
+  auto fabric = make_fabric({});
+  const heddle::friction::Model law;
+  const auto softer = make_fabric({.contact_stiffness = 2.5e8});
+  for (const bool facing : {false, true}) {
+    if (facing) fabric.facing = {0.8 * fabric.thickness, softer.compaction.curves().front()};
+    const double stack = fabric.thickness + ply_rest(fabric, 0.0);
+    // Pressed, just touched, wider than the stack, and nearer than its tables reach.
+    for (const double gap : {0.9 * stack, stack, 1.3 * stack, 0.1 * stack}) {
+      CAPTURE(facing, gap / stack);
+      spec.binder.gap = gap;
+      const Scene scene = stamping_scene(spec, fabric, law);
+      const auto level = [&](Role role) {
+        const auto tool = std::find_if(scene.tools.begin(), scene.tools.end(),
+                                       [&](const Tool& t) { return t.role == role; });
+        return std::get<RingShape>(tool->shape).level;
+      };
+      CHECK(level(Role::binder) - level(Role::die) == Approx(gap).epsilon(1e-9));
+    }
+  }
 }
 
 TEST_CASE("each ply of a state stands for itself", "[macroscale][plies][stamping]") {

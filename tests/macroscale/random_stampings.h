@@ -12,7 +12,6 @@
 #include <vector>
 
 #include "friction/model.h"
-#include "macroscale/contact.h"
 #include "macroscale/stamping.h"
 #include "mesoscale/cell_spec.h"
 
@@ -151,10 +150,6 @@ struct RobustnessVerdict {
   double energy_residual = 0.0;  ///< limit 1 % [-]
   double force_balance = 0.0;    ///< [-]
   double penetration = 0.0;      ///< largest nodal pressure over that at the end of the compaction table [-]
-  /// How deep the largest nodal pressure drives a tool into its face, by the compaction table and straight on
-  /// beyond it, over half of the fabric's thickness: from 1 on the tool would have gone through the middle
-  /// [-].
-  double depth = 0.0;
   macroscale::StampingSummary summary;
   std::string failure;
 };
@@ -170,11 +165,6 @@ inline RobustnessVerdict run(const RandomStamping& c, std::function<bool()> stop
   verdict.energy_residual = result.summary.energy_residual_max;
   verdict.force_balance = result.summary.force_balance_residual_max;
   verdict.penetration = result.summary.crush_share;
-  const Curve& compaction = c.fabric.compaction.curves().front();
-  const double end = compaction.x().back(), last = compaction.y().back();
-  const double beyond = std::max(0.0, (verdict.penetration - 1.0) * last / compaction.evaluate(end).slope);
-  verdict.depth =
-      (macroscale::approach_at(compaction, verdict.penetration * last) + beyond) / (0.5 * c.fabric.thickness);
   verdict.failure = result.summary.failure;
   return verdict;
 }

