@@ -68,8 +68,9 @@ DragDirection drag_direction(const FabricGeometry& fabric, const CompactionLaw& 
         const auto mu = [&](double direction) {
           return friction_at(bearing, pressures[p], spec.speed, direction, angle);
         };
-        const double along = mu(diagonal), across = mu(diagonal + 90.0 * degree);
-        const double share = (along - across) / (along + across);
+        const double along = mu(diagonal), across = mu(diagonal + 90.0 * degree),
+                     between = mu(diagonal + 45.0 * degree);  // and on the other side, by the mirror
+        const double share = 2.0 * (along - across) / (along + across + 2.0 * between);
         k_cosine[p] = share * std::sin(angle);
         k_sine[p] = share * std::cos(angle);
       });
