@@ -2,6 +2,7 @@
 
 #include <cmath>
 #include <numbers>
+#include <vector>
 
 #include <fmt/format.h>
 #include <tbb/parallel_for.h>
@@ -14,6 +15,10 @@ namespace heddle::mesoscale {
 namespace {
 
 constexpr double degree = std::numbers::pi / 180.0;
+
+// Where the table is taken: nominal pressures [Pa] and trellis angles [rad].
+const std::vector<double> film_pressures{5e3, 20e3, 50e3, 100e3, 150e3, 200e3, 300e3};
+const std::vector<double> film_angles{0.0, 10.0 * degree, 20.0 * degree, 30.0 * degree, 40.0 * degree};
 
 FilmSpec film_of(const FabricGeometry& fabric, const ResinSpec& resin, const FilmDirectionSpec& spec) {
   constexpr double gas_constant = 8.31446261815324;  // [J/(mol K)]
@@ -42,24 +47,14 @@ double friction_at(const FilmBearing& bearing, double pressure, double speed, do
 
 }  // namespace
 
-const std::vector<double>& film_pressures() {
-  static const std::vector<double> pressures{5e3, 20e3, 50e3, 100e3, 150e3, 200e3, 300e3};
-  return pressures;
-}
-
-const std::vector<double>& film_angles() {
-  static const std::vector<double> angles{0.0, 10.0 * degree, 20.0 * degree, 30.0 * degree, 40.0 * degree};
-  return angles;
-}
-
 DragDirection drag_direction(const FabricGeometry& fabric, const CompactionLaw& law, const ResinSpec& resin,
                              const FilmDirectionSpec& spec) {
-  const std::vector<double>& pressures = film_pressures();
+  const std::vector<double>& pressures = film_pressures;
   const FilmSpec film = film_of(fabric, resin, spec);
   std::vector<double> log_pressure;
   for (const double pressure : pressures) log_pressure.push_back(std::log(pressure));
   std::vector<Curve> cosine, sine;
-  for (const double angle : film_angles()) {
+  for (const double angle : film_angles) {
     std::vector<double> k_cosine(pressures.size(), 0.0), k_sine(pressures.size(), 0.0);
     if (angle > 0.0) {
       const FilmBearing bearing(fabric, law, angle, film);
@@ -78,7 +73,7 @@ DragDirection drag_direction(const FabricGeometry& fabric, const CompactionLaw& 
     cosine.emplace_back(log_pressure, std::move(k_cosine));
     sine.emplace_back(log_pressure, std::move(k_sine));
   }
-  return {CurveFamily(film_angles(), std::move(cosine)), CurveFamily(film_angles(), std::move(sine))};
+  return {CurveFamily(film_angles, std::move(cosine)), CurveFamily(film_angles, std::move(sine))};
 }
 
 }  // namespace heddle::mesoscale

@@ -1,7 +1,5 @@
 #pragma once
 
-#include <vector>
-
 #include "mesoscale/cell_spec.h"
 #include "mesoscale/compaction.h"
 #include "mesoscale/state.h"
@@ -19,9 +17,5 @@ namespace heddle::mesoscale {
 /// @throws NumericalError  where a film is not found (names angle, pressure and direction)
 DragDirection drag_direction(const FabricGeometry& fabric, const CompactionLaw& law, const ResinSpec& resin,
                              const FilmDirectionSpec& spec);
-
-/// Where the table is taken: nominal pressures [Pa] and trellis angles [rad].
-const std::vector<double>& film_pressures();
-const std::vector<double>& film_angles();
 
 }  // namespace heddle::mesoscale

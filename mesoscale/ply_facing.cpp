@@ -17,7 +17,7 @@ namespace {
 constexpr int pitch_samples = 80;  // along each edge of a pitch
 // Shifts of the mean: a lattice of Fibonacci numbers, even in both directions.
 constexpr int mean_shifts = 233, mean_step = 144;
-constexpr int depth_bins = 1000;                // of the depth of a face, over a ply's thickness
+constexpr int depth_bins = 1000;                // of the two depths together, over a ply's thickness
 constexpr int table_points = 128;               // of the table, even in the closing, from 0
 constexpr double highest_table_pressure = 6e6;  // [Pa], as the tables against a plate
 
@@ -75,65 +75,57 @@ Depths depths_at_shift(const UnitCell& cell, const PlyShift& shift) {
   return depths;
 }
 
-class Pressing {
- public:
-  Pressing(const FabricGeometry& fabric, const CompactionLaw& law, Depths depths)
-      : depths_(std::move(depths)),
-        layer_(even_layer(fabric, law)),
-        middles_(2.0 * unit_cell(fabric, 0.0).crown()) {
-    const auto squeeze = [&](std::size_t k) {
-      const TowGeometry& tow = fabric.crossing.tow[k];
-      return TowSqueeze(law, thickness(tow.section), tow.fibre_fraction);
-    };
-    const bool balanced =
-        thickness(fabric.crossing.tow[0].section) == thickness(fabric.crossing.tow[1].section) &&
-        fabric.crossing.tow[0].fibre_fraction == fabric.crossing.tow[1].fibre_fraction;
-    for (std::size_t a = 0; a < 2; ++a)
-      for (std::size_t b = 0; b < 2; ++b) pair_.emplace_back(squeeze(a), squeeze(b), balanced || a == b);
-  }
-
-  /// P at H - g = closing [m].
-  double pressure(double closing) const {
-    double sum = 0.0;
-    for (std::size_t a = 0; a < 2; ++a)
-      for (std::size_t b = 0; b < 2; ++b) {
-        const std::vector<double>& share = depths_.share[a][b];
-        for (std::size_t k = 0; k < share.size(); ++k) {
-          const double overlap = closing - depths_.step * static_cast<double>(k);
-          if (overlap <= 0.0) break;
-          if (share[k] > 0.0) sum += share[k] * pair_[2 * a + b].stress(overlap);
-        }
-      }
-    return std::max(sum, layer_.stress(closing - (middles_ - layer_.thickness())));
-  }
-
-  /// Closing at which fibres are packed somewhere.
-  double deepest() const {
-    double least = middles_ - layer_.thickness() + layer_.squeeze_at(1.2);
-    for (std::size_t a = 0; a < 2; ++a)
-      for (std::size_t b = 0; b < 2; ++b) {
-        const std::vector<double>& share = depths_.share[a][b];
-        const auto first = std::find_if(share.begin(), share.end(), [](double s) { return s > 0.0; });
-        if (first == share.end()) continue;
-        const double start = depths_.step * static_cast<double>(first - share.begin());
-        least = std::min(least, start + pair_[2 * a + b].squeeze_at(1.2));
-      }
-    return least;
-  }
-
- private:
-  // As much glass as a ply has, spread evenly at the tows' own fibre fraction.
-  static TowSqueeze even_layer(const FabricGeometry& fabric, const CompactionLaw& law) {
-    const double fraction =
-        std::max(fabric.crossing.tow[0].fibre_fraction, fabric.crossing.tow[1].fibre_fraction);
-    return TowSqueeze(law, sheet_shares(fabric).glass * fabric.thickness / fraction, fraction);
-  }
-
-  Depths depths_;
-  TowSqueeze layer_;
-  double middles_;                 // distance of the middles, crown on crown [m]
-  std::vector<PairSqueeze> pair_;  // 2 a + b
+/// What all shifts of one fabric have in common.
+struct FacingTows {
+  std::vector<PairSqueeze> pair;  // of the lower ply's tow a and the upper's b: 2 a + b
+  TowSqueeze layer;               // as much glass as a ply has, spread evenly at the tows' own fibre fraction
+  double middles;                 // distance of the middles, crown on crown [m]
 };
+
+FacingTows facing_tows(const FabricGeometry& fabric, const CompactionLaw& law, const UnitCell& cell) {
+  const auto& tow = fabric.crossing.tow;
+  const auto squeeze = [&](std::size_t k) {
+    return TowSqueeze(law, thickness(tow[k].section), tow[k].fibre_fraction);
+  };
+  const bool balanced = thickness(tow[0].section) == thickness(tow[1].section) &&
+                        tow[0].fibre_fraction == tow[1].fibre_fraction;
+  std::vector<PairSqueeze> pair;
+  for (std::size_t a = 0; a < 2; ++a)
+    for (std::size_t b = 0; b < 2; ++b) pair.emplace_back(squeeze(a), squeeze(b), balanced || a == b);
+  const double fraction = std::max(tow[0].fibre_fraction, tow[1].fibre_fraction);
+  return {std::move(pair),
+          TowSqueeze(law, sheet_shares(fabric).glass * fabric.thickness / fraction, fraction),
+          2.0 * cell.crown()};
+}
+
+// P at H - g = closing [m].
+double pressure_of(const FacingTows& tows, const Depths& depths, double closing) {
+  double sum = 0.0;
+  for (std::size_t a = 0; a < 2; ++a)
+    for (std::size_t b = 0; b < 2; ++b) {
+      const std::vector<double>& share = depths.share[a][b];
+      for (std::size_t k = 0; k < share.size(); ++k) {
+        const double overlap = closing - depths.step * static_cast<double>(k);
+        if (overlap <= 0.0) break;
+        if (share[k] > 0.0) sum += share[k] * tows.pair[2 * a + b].stress(overlap);
+      }
+    }
+  return std::max(sum, tows.layer.stress(closing - (tows.middles - tows.layer.thickness())));
+}
+
+// Closing at which fibres are packed somewhere.
+double deepest_closing(const FacingTows& tows, const Depths& depths) {
+  double least = tows.middles - tows.layer.thickness() + tows.layer.squeeze_at(1.2);
+  for (std::size_t a = 0; a < 2; ++a)
+    for (std::size_t b = 0; b < 2; ++b) {
+      const std::vector<double>& share = depths.share[a][b];
+      const auto first = std::find_if(share.begin(), share.end(), [](double s) { return s > 0.0; });
+      if (first == share.end()) continue;
+      const double start = depths.step * static_cast<double>(first - share.begin());
+      least = std::min(least, start + tows.pair[2 * a + b].squeeze_at(1.2));
+    }
+  return least;
+}
 
 // A table from the closing at which the plies touch to that of the highest pressure.
 template <class Pressure>
@@ -159,28 +151,29 @@ PlyFacing table_of(const Pressure& pressure_at, double thickness, double rest, d
 
 PlyFacing facing_of_shift(const FabricGeometry& fabric, const CompactionLaw& law, const PlyShift& shift) {
   const UnitCell cell = unit_cell(fabric, 0.0);
-  const Pressing pressing(fabric, law, depths_at_shift(cell, shift));
-  return table_of([&](double closing) { return pressing.pressure(closing); }, 2.0 * cell.crown(),
-                  closest_approach(cell, shift), pressing.deepest());
+  const FacingTows tows = facing_tows(fabric, law, cell);
+  const Depths depths = depths_at_shift(cell, shift);
+  return table_of([&](double closing) { return pressure_of(tows, depths, closing); }, tows.middles,
+                  closest_approach(cell, shift), deepest_closing(tows, depths));
 }
 
 PlyFacing facing_of_all_shifts(const FabricGeometry& fabric, const CompactionLaw& law) {
   const UnitCell cell = unit_cell(fabric, 0.0);
   const std::array<double, 2> size = cell.size();
-  std::vector<std::optional<Pressing>> shifted(mean_shifts);
+  const FacingTows tows = facing_tows(fabric, law, cell);
+  std::vector<Depths> shifted(mean_shifts);
   tbb::parallel_for(0, mean_shifts, [&](int k) {
-    const PlyShift shift{(k + 0.5) / mean_shifts * size[0],
-                         (k * mean_step % mean_shifts + 0.5) / mean_shifts * size[1]};
-    shifted[k].emplace(fabric, law, depths_at_shift(cell, shift));
+    shifted[k] = depths_at_shift(cell, {(k + 0.5) / mean_shifts * size[0],
+                                        (k * mean_step % mean_shifts + 0.5) / mean_shifts * size[1]});
   });
-  double deepest = 1e300;
-  for (const auto& pressing : shifted) deepest = std::min(deepest, pressing->deepest());
+  double deepest = deepest_closing(tows, shifted.front());
+  for (const Depths& depths : shifted) deepest = std::min(deepest, deepest_closing(tows, depths));
   const auto mean = [&](double closing) {
     double sum = 0.0;
-    for (const auto& pressing : shifted) sum += pressing->pressure(closing) / mean_shifts;
+    for (const Depths& depths : shifted) sum += pressure_of(tows, depths, closing) / mean_shifts;
     return sum;
   };
-  return table_of(mean, 2.0 * cell.crown(), 2.0 * cell.crown(), deepest);
+  return table_of(mean, tows.middles, tows.middles, deepest);
 }
 
 }  // namespace heddle::mesoscale

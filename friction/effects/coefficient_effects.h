@@ -145,8 +145,7 @@ struct About<Orientation> {
                          &Orientation::amplitude,
                          {-1.0, 10.0, true, false},
                          "Excess at 45 deg to the tows, or (trellis) along the long diagonal of a closed "
-                         "trellis, or (film) share "
-                         "of what the film gives; 0 is off."}};
+                         "trellis, or (film) share of what the film gives; 0 is off."}};
 };
 template <>
 struct About<Adhesion> {
